@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from tests.control.fin_tasks import PAPER_OBJECTIVES, PUBLISHED, VARIANCES, fin_task
 
-from seatrial.control.gain_evaluation import gain_evaluator
+from seatrial.control.choice import _rate_curve
+from seatrial.control.gain_evaluation import GainEvaluator, gain_evaluator, polished_gains
 from seatrial.control.task import Effectiveness
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.physics.loops import Performance
@@ -84,3 +85,38 @@ def test_effectiveness_goes_with_the_square_of_the_speed():
     task = replace(fin_task(), effectiveness=Effectiveness.SPEED_SQUARED)
     assert task.loop_at(2.0 * task.U).plant.gain == pytest.approx(4.0 * task.loop.plant.gain)
     assert task.loop_at(2.0 * task.U).disturbance.gain == task.loop.disturbance.gain
+
+
+@pytest.mark.parametrize("gains", [PUBLISHED, np.array([16.0, 150.0, 1.0])])
+def test_each_excess_and_its_slopes_are_those_of_the_numbers(gains):
+    one = gain_evaluator(fin_task())
+    values, slopes = one.excess_of_each(gains)
+    np.testing.assert_allclose(
+        [values[:3].max(), *values[3:]], one.evaluate(gains[None]).excess[0], rtol=1e-9, atol=1e-9
+    )
+    differences = _differences(lambda k: one.excess_of_each(k)[0], gains)
+    np.testing.assert_allclose(slopes[values > -1.0], differences[values > -1.0], rtol=2e-5, atol=1e-8)
+
+
+def test_gains_along_the_rate_stay_where_sums_end_in_other_bits(monkeypatch):
+    def optima(noise):
+        rng, evaluate = np.random.default_rng(noise), Performance.evaluate
+
+        def rounded_elsewhere(self, gains, *, with_Ms=True):
+            made = evaluate(self, gains, with_Ms=with_Ms)
+            return replace(made, variances=made.variances * (1.0 + 4e-16 * rng.integers(-2, 3, made.variances.shape)))
+
+        with monkeypatch.context() as patch:
+            patch.setattr(Performance, "evaluate", rounded_elsewhere)
+            curve = _rate_curve(gain_evaluator(fin_task()), 0)
+            return curve.levels[::5], curve.gains_at(curve.levels[::5])
+
+    (levels, gains), (other_levels, others) = optima(1), optima(2)
+    np.testing.assert_allclose(levels, other_levels, rtol=1e-9)
+    np.testing.assert_allclose(gains, others, rtol=1e-7, atol=1e-7)
+
+
+def test_a_point_that_is_no_optimum_is_not_verified():
+    task = fin_task()
+    one = GainEvaluator(task, task.loop, (task.motion,))
+    assert polished_gains(one, np.array([1.0, 1.0, 1.0])) is None

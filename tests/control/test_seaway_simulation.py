@@ -12,6 +12,7 @@ from seatrial.control.simulation import (
     compare_pairwise,
     disturbance_series,
     effect_amplitudes,
+    energy_saving,
     frequency_band,
     seaway_reductions,
     simulate_in_seaway,
@@ -21,7 +22,7 @@ from seatrial.control.simulation import (
 from seatrial.control.task import Effectiveness, Seaway, SimulationSettings, TrimmedShip, TuningTask
 from seatrial.core.results.tuning import SeawaySimulation
 from seatrial.core.values import InputError
-from seatrial.physics.loops import LoopSignal, Performance, Sampling
+from seatrial.physics.loops import ActuatorDrive, LiftingSurface, LoopSignal, Performance, Sampling
 from seatrial.physics.loops.loop_states import plant_model
 from seatrial.physics.loops.objective import variance
 from seatrial.physics.loops.performance import calm_actuator, distinct_variances
@@ -208,3 +209,16 @@ def test_noise_costs_roll_and_every_sea_has_noise_of_its_own() -> None:
     same = replace(task, loop=noisy.loop)
     first, second = (seaway_reductions(same, same.loop, PUBLISHED, seed)[:, 0] for seed in (0, 1))
     np.testing.assert_array_equal(first[1:], second[:-1])
+
+
+def test_energy_in_the_same_seas_is_compared_pairwise(paper: SeawaySimulation) -> None:
+    """Without limits' effect small gains move the fins less; the drag is that of the rms angle."""
+    task = replace(at_sea(4, 300.0), drive=ActuatorDrive(800.0, 0.8), surface=LiftingSurface(5.0, 1.0))
+    one, other = (simulate_in_seaway(task, task.loop, "one", share * PUBLISHED, 0) for share in (0.5, 1.0))
+    saved = energy_saving(one, other)
+    gap = other.drive_energy + other.drag_energy - one.drive_energy - one.drag_energy
+    assert saved.mean == pytest.approx(np.mean(gap)) and saved.lower > 0.0 and saved.seeds == 4
+    angle = other.record["alpha_f"]
+    assert task.surface is not None
+    assert other.drag_energy[0] == pytest.approx(task.surface.hourly_energy(float(np.mean(angle**2)), BEAM.U), rel=1e-9)
+    assert len(paper.drive_energy) == len(paper.drag_energy) == 0

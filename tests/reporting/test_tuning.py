@@ -38,6 +38,7 @@ from seatrial.reporting.tuning_rows import (
 from seatrial.reporting.tuning_text import (
     comparison_sentence,
     demand_sentence,
+    energy_sentence,
     guidance_sentence,
     key_facts,
     verdict,
@@ -278,3 +279,21 @@ def test_text_from_files_is_escaped(make: Callable[[], Tuning]) -> None:
         manoeuvres=tuple(replace(m, name=HOSTILE) for m in tuning.manoeuvres),
     )  # fmt: skip
     assert parsed(html(hostile)).scripts == parsed(html(tuning)).scripts
+
+
+def test_energy_saved_is_said_in_megajoules_with_its_interval() -> None:
+    saved, lost, equal = (
+        energy_sentence(PairedDifference("x", "stalled", *ends, 20))
+        for ends in ((9.48e6, 8.97e6, 1.0e7), (-2e6, -3e6, -1e6), (1e5, -1e6, 1.2e6))
+    )
+    assert saved == "That is 9.48 MJ less than by ‘x’ (95 % interval 8.97 to 10.0, 20 realisations)."
+    assert lost == "That is 2.00 MJ more than by ‘x’ (95 % interval 1.00 to 3.00, 20 realisations)."
+    assert equal.startswith("The difference to ‘x’ is not significant: 0.100 MJ less (95 % interval −1.00 to 1.20")
+
+
+def test_equal_controllers_share_one_row() -> None:
+    tuning = fabricated_fin()
+    given = tuning.baselines[0]
+    same = replace(tuning, designs=(replace(tuning.chosen, name="hard-working"),))
+    assert [c.name for c in same.compared] == ["chosen, hard-working", *(c.name for c in tuning.baselines)]
+    assert given.name in tuning.shared_names and len(tuning.compared) == len(tuning._named)

@@ -75,21 +75,15 @@ def verify(
         InputError: gains of another loop, a log without legs or too short, or an actuator that does not follow the
             gains.
     """
+    from seatrial.control.actuator_log import logged_records
     from seatrial.control.task import TuningTask
     from seatrial.control.verification.verify import verify
     from seatrial.data.folder.gains_file import read_gains
 
-    loaded = [record for one in records for record in ([one] if not isinstance(one, str | Path) else _log(Path(one)))]
+    loaded = [
+        record
+        for one in records
+        for record in ([one] if not isinstance(one, str | Path) else logged_records(Path(one)))
+    ]
     values = read_gains(gains) if isinstance(gains, str | Path) else gains
     return verify(task if isinstance(task, TuningTask) else load_loop(task), values, loaded)
-
-
-def _log(path: Path) -> "list[Record]":
-    """Return the runs of a trial file, or the record of one file."""
-    from seatrial.api.files import read_record
-    from seatrial.data.trial import Role, load_runs
-    from seatrial.data.trial.records import load_run
-
-    if path.suffix != ".toml":
-        return [read_record(path)]
-    return [load_run(run, 0.0).record for run in load_runs(path) if run.role is not Role.LEAVE_OUT]

@@ -1,7 +1,7 @@
 """One controller out of the fronts, with reasons: by simulation where there is one, else the compromise."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,15 +9,16 @@ from scipy.special import stdtrit
 
 from seatrial.control.controller import shortfall
 from seatrial.control.gain_evaluation import (
+    ACTUATOR_RATE,
     ON_BOUND,
     GainChoice,
+    GainEvaluation,
     GainEvaluator,
     NamedGains,
     exceedance_share,
     gains_on_bound,
     least_output_gains,
     motion_and_rate_variances,
-    non_dominated_gains,
     spread_gains,
 )
 from seatrial.control.simulation import seaway_reductions
@@ -25,10 +26,11 @@ from seatrial.control.task import Demand, TuningTask
 from seatrial.core.results.tuning import ParetoFront
 from seatrial.core.values import Array
 from seatrial.physics.loops import delay_margin
+from seatrial.physics.loops.objective import ENERGY
 
 # The choice of a stabiliser: candidates along the fronts and with more margin, all through the same seas.
 
-CANDIDATE_COUNT = 16  # gains of a front that are simulated; chosen
+CANDIDATE_COUNT = 16  # rates of the actuator at which gains are tried; chosen
 MAX_SATURATION_LOSS = 0.03  # reduction lost to the actuator's limits, as a share of one; chosen
 # seas of the selection, and their distance from the seeds of the final simulations; chosen
 _SELECTION_SEEDS, _SELECTION_SEED_OFFSET = 8, 100_000
@@ -47,7 +49,7 @@ class _Candidate:
 
     Attributes:
         reductions: in each sea, with the actuator's limits, mean of with and without stall, (seeds,).
-        saturation_loss: reduction lost to the limits; rate: variance of the actuator's rate.
+        saturation_loss: reduction lost to the limits; effort: energy if an objective, else variance of the rate.
         is_on_bound: whether a gain lies on a bound of the search that is not zero.
         is_delay_kept: whether the delay margin is long enough.
     """
@@ -57,7 +59,7 @@ class _Candidate:
     front_name: str
     reductions: Array
     saturation_loss: float
-    rate: float
+    effort: float
     Ms: float
     is_on_bound: bool
     is_delay_kept: bool
@@ -85,19 +87,19 @@ def choose_by_simulation(
         delays = [delay_margin(task.loop_at(U, loop).with_gains(gains)) for U in speeds]
         return _Candidate(
             judge, gains, front.name, 0.5 * (limited + stalled), float(np.mean(linear - limited)),
-            float(judged.variances[0, :, 2].mean()), float(judged.Ms[0]), bool(gains_on_bound(loop, gains)),
+            _effort(judge, judged), float(judged.Ms[0]), bool(gains_on_bound(loop, gains)),
             min(delays) >= task.constraints.delay,
         )  # fmt: skip
 
     tried: list[_Candidate] = []
     for judge, front in fronts:
-        some = non_dominated_gains(judge, front)
-        near = some[np.unique(np.linspace(0, len(some) - 1, CANDIDATE_COUNT).astype(int))]
+        curve = _rate_curve(judge, seed)
+        levels = curve.levels
         for around in ("along the front", "about the best"):
-            made = [simulated(judge, front, gains) for gains in near]
+            made = [simulated(judge, front, gains) for gains in curve.gains_at(levels)]
             tried += made
             report_progress(f"choice of gains: {front.name}, {len(made)} candidates {around} simulated")
-            near = _neighbouring_gains(some, _best_candidate(made).gains)
+            levels = _levels_about(levels, made.index(_best_candidate(made)))
         best = _best_candidate(tried)
         safer = [_gains_with_margin(judge, tried, best, Ms, seed) for Ms in _SAFER_MS if Ms < task.constraints.Ms]
         tried += [simulated(judge, front, gains) for gains in safer]
@@ -111,6 +113,14 @@ def choose_by_simulation(
         f"{100.0 * MAX_SATURATION_LOSS:.0f} points or more is not recommended.",
     )
     return GainChoice(best.evaluator, best.gains, best.front_name, reasons, _designs(tried, best))
+
+
+def _effort(evaluator: GainEvaluator, evaluated: GainEvaluation) -> float:
+    """Return the energy of one set of gains where the task makes that small, else the variance of the rate."""
+    names = [objective.name for objective in evaluator.objectives]
+    if ENERGY in names:
+        return float(evaluated.objectives[0, names.index(ENERGY)])
+    return float(evaluated.variances[0, :, 2].mean())
 
 
 def _gains_with_margin(judge: GainEvaluator, tried: list[_Candidate], like: _Candidate, Ms: float, seed: int) -> Array:
@@ -138,7 +148,7 @@ def _best_candidate(candidates: list[_Candidate]) -> _Candidate:
     some = _keeping(candidates)
     most = max(some, key=lambda one: one.reduction)
     equal = [one for one in some if _benefit(most, one) <= _EQUAL_REDUCTION]
-    return min(equal, key=lambda one: (one.is_on_bound, round(one.Ms / _EQUAL_MS), one.rate))
+    return min(equal, key=lambda one: (one.is_on_bound, round(one.Ms / _EQUAL_MS), one.effort))
 
 
 def _keeping(candidates: list[_Candidate]) -> list[_Candidate]:
@@ -169,20 +179,65 @@ def _is_same(one: _Candidate, other: _Candidate) -> bool:
     return one.front_name == other.front_name and bool(np.allclose(one.gains, other.gains, rtol=ON_BOUND))
 
 
-def _neighbouring_gains(candidates: Array, gains: Array) -> Array:
-    """Return gains between the neighbours, a candidate's distance away, of one of `candidates`, (n, g)."""
-    place = int(np.argmin(np.abs(candidates - gains).max(axis=1)))
-    step = max(len(candidates) // CANDIDATE_COUNT, 1)
-    low, high = max(place - step, 0), min(place + step, len(candidates) - 1)
-    return candidates[np.unique(np.linspace(low, high, CANDIDATE_COUNT).astype(int))]
+# The gains that leave least of the motion at a rate of the actuator: optima, not points where a search met its front.
+
+
+@dataclass(frozen=True, eq=False)
+class _RateCurve:
+    """Optima of a loop over the rms rate of the actuator in the worst disturbance.
+
+    Attributes:
+        samples: gains to begin from, (n, g).
+        levels: rates [rad/s] up to that of the least motion within the task's restrictions, from that of the least rate
+            where a demand is followed; `ends`: gains (g,) of these by their rate.
+    """
+
+    evaluator: GainEvaluator
+    samples: Array
+    levels: Array
+    ends: Mapping[float, Array]
+
+    def gains_at(self, levels: Array) -> Array:
+        """Return gains of least motion at each level, from the least on, (n, g): what keeps one keeps the next."""
+        optima: list[Array] = []
+        for level in levels:
+            optima.append(self._gains_at(float(level), optima))
+        return np.array(optima)
+
+    def _gains_at(self, level: float, slower: list[Array]) -> Array:
+        if level in self.ends:
+            return self.ends[level]
+        # the share exp(-1/2) of a Rayleigh distribution lies beyond its rms, so that the variance allowed is the level
+        task = self.evaluator.task
+        within = replace(task.constraints, rate=level, rate_saturation=math.exp(-0.5))
+        evaluator = replace(self.evaluator, task=replace(task, constraints=within))
+        return least_output_gains(evaluator, self.samples, slower[-1:])
+
+
+def _rate_curve(judge: GainEvaluator, seed: int) -> _RateCurve:
+    """Return the optima of a loop over the rate: in decades of it where a demand is followed, as that needs some."""
+    task = judge.task
+    evaluator, samples = GainEvaluator(task, judge.loop, (task.motion,)), spread_gains(judge, seed)
+    ends = [least_output_gains(evaluator, samples)]
+    if task.demand is not None:
+        ends.insert(0, least_output_gains(replace(evaluator, objectives=(ACTUATOR_RATE,)), samples))
+    rates = np.sqrt(judge.evaluate(np.array(ends)).variances[:, :, 2].max(axis=1))
+    shares = np.arange(1, CANDIDATE_COUNT + 1) / CANDIDATE_COUNT
+    levels = rates[-1] * shares if task.demand is None else np.geomspace(rates[0], rates[-1], CANDIDATE_COUNT)
+    at_ends = dict(zip(rates.tolist(), ends, strict=True))
+    return _RateCurve(evaluator, np.vstack([samples, ends]), levels, at_ends)
+
+
+def _levels_about(levels: Array, place: int) -> Array:
+    """Return rates between the neighbours of one of `levels`, without those themselves and without it."""
+    low, high = levels[max(place - 1, 0)], levels[min(place + 1, len(levels) - 1)]
+    return np.setdiff1d(np.linspace(low, high, CANDIDATE_COUNT + 2)[1:-1], levels)
 
 
 # One controller out of the fronts, with reasons: by simulation where there is one, else the compromise.
 
-DEMAND_CANDIDATE_COUNT = 16  # gains of a front that follow the demand; chosen
 # rms whose logarithm is still taken, and range that counts as one: guards against zero
 _LEAST_RMS, _LEAST_RANGE = 1e-150, 1e-12
-_ROUNDING = 1e-9  # relative, of a rate that counts as kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,39 +259,21 @@ def choose(
     """Return the recommendation, from fronts that are not empty."""
     filled = tuple((judge, front) for judge, front in fronts if len(front.gains))
     if task.demand is not None:
-        return _choose_by_demand(task, task.demand, filled, report_progress)
+        return _choose_by_demand(task, task.demand, filled, seed, report_progress)
     if task.simulation is not None:
         return choose_by_simulation(task, filled, seed, report_progress)
-    best = _compromise(task, _candidates(*filled[0]))
+    judge, front = filled[0]
+    curve = _rate_curve(judge, seed)
+    tried = _candidates(judge, front.name, curve.gains_at(curve.levels))
+    about = _levels_about(curve.levels, tried.index(_compromise(task, tried)))
+    best = _compromise(task, [*tried, *_candidates(judge, front.name, curve.gains_at(about))])
     return GainChoice(best.evaluator, best.gains, best.front_name, (_compromise_reason(task, "the front"),))
 
 
-def _candidates(judge: GainEvaluator, front: ParetoFront) -> list[_DemandCandidate]:
-    """Return gains of a front of which none leaves less of the output at a lower actuator rate."""
-    some = non_dominated_gains(judge, front)
-    variances = motion_and_rate_variances(judge, some)
-    return [_DemandCandidate(judge, front.name, gains, both) for gains, both in zip(some, variances, strict=True)]
-
-
-def _candidates_by_rate(judge: GainEvaluator, front: ParetoFront) -> list[_DemandCandidate]:
-    """Return the gains that leave least of the motion at actuator rates spread evenly over the front, in decades.
-
-    Rates are those of the worst disturbance. Each set is pressed against its rate, so that the candidates are what the
-    loop is and not where a search has met its front.
-    """
-    some = non_dominated_gains(judge, front)
-    rates = judge.evaluate(some).variances[:, :, 2].max(axis=1)
-    levels = np.geomspace(
-        max(float(rates.min()), _LEAST_RMS), max(float(rates.max()), _LEAST_RMS), DEMAND_CANDIDATE_COUNT
-    )
-    made = []
-    for level in levels:
-        # the share exp(-1/2) of a Rayleigh distribution lies beyond its rms, so that the variance allowed is the level
-        within = replace(judge.task.constraints, rate=math.sqrt(level), rate_saturation=math.exp(-0.5))
-        evaluator = GainEvaluator(replace(judge.task, constraints=within), judge.loop, (judge.task.motion,))
-        made.append(least_output_gains(evaluator, some[rates <= level * (1.0 + _ROUNDING)]))
-    both = motion_and_rate_variances(judge, np.array(made))
-    return [_DemandCandidate(judge, front.name, gains, row) for gains, row in zip(made, both, strict=True)]
+def _candidates(judge: GainEvaluator, name: str, gains: Array) -> list[_DemandCandidate]:
+    """Return gains (n, g) of a front as candidates."""
+    both = motion_and_rate_variances(judge, gains)
+    return [_DemandCandidate(judge, name, row_gains, row) for row_gains, row in zip(gains, both, strict=True)]
 
 
 def _compromise_reason(task: TuningTask, candidates: str) -> str:
@@ -263,10 +300,16 @@ def _choose_by_demand(
     task: TuningTask,
     demand: Demand,
     fronts: tuple[tuple[GainEvaluator, ParetoFront], ...],
+    seed: int,
     report_progress: Callable[[str], None],
 ) -> GainChoice:
     """Return the compromise among those of all fronts that follow the demand in time, without overshooting."""
-    tried = [one for judge, front in fronts for one in _candidates_by_rate(judge, front)]
+    curves = [(judge, front.name, _rate_curve(judge, seed)) for judge, front in fronts]
+    tried = [
+        candidate
+        for judge, name, curve in curves
+        for candidate in _candidates(judge, name, curve.gains_at(curve.levels))
+    ]
     short = []
     for one in tried:
         short.append(shortfall(task, one.evaluator.loop, one.gains))

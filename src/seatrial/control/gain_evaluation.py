@@ -1,7 +1,7 @@
 """Gains in, objectives and violated limits out, by the thousand; pressed against what they must keep."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -9,12 +9,10 @@ import numpy as np
 from scipy.optimize import NonlinearConstraint, minimize
 
 from seatrial.control.task import OUTPUT, TuningTask
-from seatrial.core.results.tuning import ParetoFront
 from seatrial.core.values import Array, Index
-from seatrial.numerics.optimise import non_dominated
 from seatrial.physics.loops import LoopEvaluation, LoopSignal, Objective, Performance, TransferLoop
 from seatrial.physics.loops.objective import variance
-from seatrial.physics.loops.performance import distinct_variances
+from seatrial.physics.loops.performance import PEAKS, distinct_variances
 
 # Gains in, objectives and broken restrictions out, for all that a task meets; by the thousand, with gradients.
 
@@ -165,6 +163,26 @@ class GainEvaluator:
             excess[1 + i] = rows[worst][place] / self.allowed_variances[i]
         return objectives, excess
 
+    @property
+    def restriction_count(self) -> int:
+        """Number of rows of `excess_of_each`."""
+        return PEAKS * sum(self._has_own_Ms) + 2 * len(self.performances)
+
+    def excess_of_each(self, gains: Array) -> tuple[Array, Array]:
+        """Return excess (c,) and its slopes (c, g) at one stable point (g,), each smooth in the gains.
+
+        A row for each peak of |S| of each plant, then for actuator and rate in each disturbance; `evaluate` has the
+        largest of them, whose slope changes abruptly where two are equal.
+        """
+        peaks = [p.sensitivity_peaks(gains) for p, own in zip(self.performances, self._has_own_Ms, strict=True) if own]
+        values = [top / self.task.constraints.Ms - 1.0 for top, _ in peaks]
+        slopes = [rows / self.task.constraints.Ms for _, rows in peaks]
+        places = [at[0] for at in self._variance_indices[-3:-1]]
+        for loops, performance in zip(self._remembered_loops(_bytes(gains)), self.performances, strict=True):
+            values.append(loops.variances[0, places] / self.allowed_variances - 1.0)
+            slopes.append(performance.variance_gradients(gains)[places] / self.allowed_variances[:, None])
+        return np.concatenate(values), np.concatenate(slopes)
+
 
 def _bytes(gains: Array) -> bytes:
     return np.asarray(gains, dtype=np.float64).tobytes()
@@ -211,7 +229,7 @@ def refine_gains(evaluator: GainEvaluator, start: Array, ceiling: Array | None =
     """
     places, (low, high) = free_gain_bounds(evaluator)
     width = high - low
-    count = 0 if ceiling is None else len(ceiling)
+    count, rows = 0 if ceiling is None else len(ceiling), evaluator.restriction_count
     top = np.ones(0) if ceiling is None else np.maximum(ceiling, _TINY)
 
     def all_gains_at(unit: Array) -> Array:
@@ -227,14 +245,19 @@ def refine_gains(evaluator: GainEvaluator, start: Array, ceiling: Array | None =
         return (evaluator.slopes(all_gains_at(unit)[0])[0][:, places] / made[:, None]).sum(axis=0) * width
 
     def constraint_margins(unit: Array) -> Array:
-        made = evaluator.evaluate(all_gains_at(unit))
-        left = 1.0 - np.minimum(made.objectives[0, :count] / top, _LARGEST_EXCESS)
-        return np.concatenate([left, -np.minimum(made.excess[0], _LARGEST_EXCESS)])
+        gains = all_gains_at(unit)
+        evaluated = evaluator.evaluate(gains)
+        left = 1.0 - np.minimum(evaluated.objectives[0, :count] / top, _LARGEST_EXCESS)
+        each = (
+            evaluator.excess_of_each(gains[0])[0] if math.isfinite(evaluated.Ms[0]) else np.full(rows, _LARGEST_EXCESS)
+        )
+        return np.concatenate([left, -np.minimum(each, _LARGEST_EXCESS)])
 
     def constraint_slopes(unit: Array) -> Array:
-        if not math.isfinite(evaluator.evaluate(all_gains_at(unit)).Ms[0]):
-            return np.zeros((count + 3, len(unit)))
-        objectives, excess = evaluator.slopes(all_gains_at(unit)[0])
+        gains = all_gains_at(unit)
+        if not math.isfinite(evaluator.evaluate(gains).Ms[0]):
+            return np.zeros((count + rows, len(unit)))
+        objectives, excess = evaluator.slopes(gains[0])[0], evaluator.excess_of_each(gains[0])[1]
         return -np.concatenate([objectives[:count] / top[:, None], excess])[:, places] * width
 
     found = minimize(
@@ -283,13 +306,6 @@ def gains_on_bound(loop: TransferLoop, gains: Array) -> tuple[tuple[str, str, fl
     return tuple(found)
 
 
-def non_dominated_gains(evaluator: GainEvaluator, front: ParetoFront) -> Array:
-    """Return gains of the front of which none leaves less of the motion at a lower actuator rate, by motion, (n, g)."""
-    both = motion_and_rate_variances(evaluator, front.gains)
-    first = non_dominated(both)
-    return front.gains[first[np.argsort(both[first, 0])]]
-
-
 def motion_and_rate_variances(evaluator: GainEvaluator, gains: Array) -> Array:
     """Return variances of the motion that counts and of the actuator's rate, means over what the loop meets, (n, 2)."""
     return evaluator.evaluate(gains).variances[:, :, [3, 2]].mean(axis=1)
@@ -311,24 +327,35 @@ def spread_gains(evaluator: GainEvaluator, seed: int) -> Array:
     return all_gains(evaluator, low + unit * (high - low))
 
 
-def least_output_gains(evaluator: GainEvaluator, samples: Array) -> Array:
+def least_output_gains(evaluator: GainEvaluator, samples: Array, near: Sequence[Array] = ()) -> Array:
     """Return the best samples pressed against the restrictions; the least first objective wins, (g,).
 
-    Where no sample keeps them, the one that breaks them least.
+    Where no sample keeps them, the one that breaks them least. near: gains (g,) that are begun from whatever they do.
     """
     judged = evaluator.evaluate(samples)
     values = np.where(judged.is_feasible, judged.objectives[:, 0], np.inf)
-    places = free_gain_bounds(evaluator)[0]
+    places, (low, _) = free_gain_bounds(evaluator)
     order = np.argsort(values if np.isfinite(values).any() else judged.excess.max(axis=1))
     tried = [samples[i] for i in order[:_STARTS]]
-    tried += [all_gains(evaluator, refine_gains(evaluator, start[places])[None])[0] for start in tried]
+    faces = np.tile(tried[0][places], (len(places), 1))  # an optimum may lie where a term is left out
+    np.fill_diagonal(faces, low)
+    tried += near
+    starts = [*(start[places] for start in tried), *faces]
+    tried += [_pressed_gains(evaluator, start) for start in starts]
     best = _best_of(evaluator, tried)
     for _ in range(_RESTARTS):  # the search's picture of the curvature begins anew
-        again = _best_of(evaluator, [best, all_gains(evaluator, refine_gains(evaluator, best[places])[None])[0]])
-        if np.array_equal(again, best):
-            break
+        again = _best_of(evaluator, [best, _pressed_gains(evaluator, best[places])])
+        if np.allclose(again, best, rtol=_ROUNDING, atol=0.0):
+            return again
         best = again
     return best
+
+
+def _pressed_gains(evaluator: GainEvaluator, start: Array) -> Array:
+    """Return gains (g,) of a search by gradients from free gains (f,), at the optimum itself where it is verified."""
+    gains = all_gains(evaluator, refine_gains(evaluator, start)[None])[0]
+    polished = polished_gains(evaluator, gains)
+    return gains if polished is None else polished
 
 
 def _best_of(evaluator: GainEvaluator, tried: list[Array]) -> Array:
@@ -337,3 +364,123 @@ def _best_of(evaluator: GainEvaluator, tried: list[Array]) -> Array:
     if not judged.is_feasible.any():
         return tried[int(np.argmin(judged.excess.max(axis=1)))]
     return tried[int(np.argmin(np.where(judged.is_feasible, judged.objectives[:, 0], np.inf)))]
+
+
+# An optimum to rounding: Newton's method on the conditions of Karush, Kuhn and Tucker (Nocedal & Wright 2006,
+# Numerical Optimization, section 12.3), so that the last bits of another machine's sums leave the gains as they are.
+
+_ACTIVE, _AT_BOUND = 1e-5, 1e-7  # excess, and share of a range, within which a restriction is first held; chosen
+_NO_INTEGRAL = 1e-9  # share of a range in the place of zero where a loop needs the gain to be stable; chosen
+_CURVATURE_STEP = 1e-5  # of a range, of the differences of slopes; the cube root of rounding
+_NEWTON_STEPS, _WORKING_SETS = 30, 12  # at most; chosen
+_CONVERGED = 1e-9  # share of a range of a step that is rounding
+_LARGEST_NEWTON_STEP = 0.25  # share of a range: beyond it another optimum is nearer; chosen
+_NO_MULTIPLIER = 1e-9  # least multiplier over the slopes of the objective, below which it is negative: rounding
+
+
+@dataclass(frozen=True, eq=False)
+class _LocalProblem:
+    """The least first objective of an evaluator about a point, over the unit box of its free gains."""
+
+    evaluator: GainEvaluator
+
+    def gains(self, unit: Array) -> Array:
+        """Return all gains (g,) of a point (f,) of the unit box."""
+        low, high = free_gain_bounds(self.evaluator)[1]
+        return all_gains(self.evaluator, (low + unit * (high - low))[None])[0]
+
+    def slopes(self, unit: Array) -> tuple[Array, Array, Array]:
+        """Return slopes of the objective's logarithm (f,), excess (c,) and its slopes (c, f)."""
+        places, (low, high) = free_gain_bounds(self.evaluator)
+        gains = self.gains(unit)
+        value = self.evaluator.evaluate(gains[None]).objectives[0, 0]
+        excess, rows = self.evaluator.excess_of_each(gains)
+        width = high - low
+        return self.evaluator.slopes(gains)[0][0, places] * width / value, excess, rows[:, places] * width
+
+    def is_regular(self, unit: Array) -> bool:
+        """Return whether the loop is stable there and the objective has a logarithm."""
+        evaluated = self.evaluator.evaluate(self.gains(unit)[None])
+        return bool(np.isfinite(evaluated.Ms[0]) and 0.0 < evaluated.objectives[0, 0] < np.inf)
+
+    def stationary_point(self, start: Array, free: Index, held: Index) -> tuple[Array, Array] | None:
+        """Return where the Lagrangian is stationary with the restrictions `held` exactly, and their multipliers.
+
+        None where Newton's steps lead away, or to no minimum.
+        """
+        x, count = start.copy(), len(free)
+        for _ in range(_NEWTON_STEPS):
+            if not self.is_regular(x) or len(held) > count:
+                return None
+            slope, excess, rows = self.slopes(x)
+            rows = rows[np.ix_(held, free)]
+            multipliers = np.linalg.lstsq(rows.T, -slope[free], rcond=None)[0]
+            curvature = self._curvature(x, free, held, multipliers)
+            if curvature is None:
+                return None
+            system = np.block([[curvature, rows.T], [rows, np.zeros((len(held), len(held)))]])
+            step = np.linalg.lstsq(system, -np.concatenate([slope[free], excess[held]]), rcond=None)[0]
+            if np.abs(step[:count]).max(initial=0.0) > _LARGEST_NEWTON_STEP:
+                return None
+            x[free] += step[:count]
+            if np.abs(step[:count]).max(initial=0.0) < _CONVERGED:
+                basis = np.linalg.svd(rows)[2][len(held) :]
+                is_least = np.all(np.linalg.eigvalsh(basis @ curvature @ basis.T) > 0.0)
+                return (x, step[count:]) if is_least and self.is_regular(x) else None
+        return None
+
+    def _curvature(self, x: Array, free: Index, held: Index, multipliers: Array) -> Array | None:
+        """Return second derivatives of the Lagrangian by the free gains, differences of its slopes."""
+        columns = []
+        for place in free:
+            ends = []
+            for step in (_CURVATURE_STEP, -_CURVATURE_STEP):
+                beside = x.copy()
+                beside[place] += step
+                if not self.is_regular(beside):
+                    return None
+                slope, _, rows = self.slopes(beside)
+                ends.append(slope[free] + multipliers @ rows[np.ix_(held, free)])
+            columns.append((ends[0] - ends[1]) / (2.0 * _CURVATURE_STEP))
+        curvature = np.reshape(columns, (len(free), len(free)))
+        return 0.5 * (curvature + curvature.T)
+
+
+def polished_gains(evaluator: GainEvaluator, start: Array) -> Array | None:
+    """Return the gains (g,) at the optimum of the first objective next to a search's end; None where none is verified.
+
+    Verified are the slopes of the Lagrangian (zero), restrictions (kept), multipliers (none negative) and curvature
+    (positive where no restriction holds).
+    """
+    places, (low, high) = free_gain_bounds(evaluator)
+    problem = _LocalProblem(evaluator)
+    x = (start[places] - low) / (high - low)
+    bound = np.where(x <= _AT_BOUND, -1, np.where(x >= 1.0 - _AT_BOUND, 1, 0))
+    x = np.where(bound < 0, 0.0, np.where(bound > 0, 1.0, x))
+    if not problem.is_regular(x):  # an integrator without a gain is no loop
+        x[bound < 0] = _NO_INTEGRAL
+    if not problem.is_regular(x):
+        return None
+    held = problem.slopes(x)[1] > -_ACTIVE
+    for _ in range(_WORKING_SETS):
+        stationary = problem.stationary_point(x, np.flatnonzero(bound == 0), np.flatnonzero(held))
+        if stationary is None:
+            return None
+        point, multipliers = stationary
+        slope, excess, rows = problem.slopes(point)
+        pull = bound * (slope + multipliers @ rows[held])  # positive: the bound keeps nothing back
+        least = -_NO_MULTIPLIER * np.abs(slope).max()
+        beyond = (point < 0.0) | (point > 1.0)
+        if np.any(beyond):
+            place = int(np.argmax(np.abs(point - 0.5)))
+            bound[place] = -1 if point[place] < 0.0 else 1
+            x[place] = 0.0 if point[place] < 0.0 else 1.0
+        elif np.any(excess[~held] > _ROUNDING):
+            held[int(np.argmax(np.where(held, -np.inf, excess)))] = True
+        elif np.any(multipliers < least):
+            held[np.flatnonzero(held)[int(np.argmin(multipliers))]] = False
+        elif np.any(pull > -least):
+            bound[int(np.argmax(pull))] = 0
+        else:
+            return problem.gains(point)
+    return None

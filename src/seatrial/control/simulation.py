@@ -53,7 +53,7 @@ def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: A
         InputError: the task has no sea or no trials, or the sea does not move the ship.
         DivergedError: the loop runs away.
     """
-    reductions = seaway_reductions(task, loop, gains, seed)
+    reductions, energies = _seaway_trials(task, loop, gains, seed)
     seaway, trials = _sea_and_trials(task)
     steered, everything = closed_loop(task, loop, gains, seaway.U, trials.dt), _actuator_limits(task)
     met = disturbance_series(seaway, trials, seed)[0]
@@ -64,7 +64,8 @@ def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: A
     uncontrolled = {f"{name}_{UNCONTROLLED}": alone.channel(name) for name in (loop.output, MOTION) if name in alone}
     shown = replace(shown, channels={**shown.channels, **uncontrolled})
     linear, limited, stalled = (frozen(column) for column in reductions.T)
-    return SeawaySimulation(name, linear, limited, stalled, shown)
+    drive, drag = (frozen(column) if np.isfinite(column).all() else np.empty(0) for column in energies.T)
+    return SeawaySimulation(name, linear, limited, stalled, shown, drive, drag)
 
 
 def seaway_reductions(task: TuningTask, loop: TransferLoop, gains: Array, seed: int) -> Array:
@@ -72,17 +73,34 @@ def seaway_reductions(task: TuningTask, loop: TransferLoop, gains: Array, seed: 
 
     Columns: without limits, with those of angle and rate, with stall as well. Raises what `simulate_in_seaway` does.
     """
+    return _seaway_trials(task, loop, gains, seed)[0]
+
+
+def _seaway_trials(task: TuningTask, loop: TransferLoop, gains: Array, seed: int) -> tuple[Array, Array]:
+    """Return `seaway_reductions`, and J in an hour by drive and drag with all limits, (seeds, 2); nan undeclared."""
     seaway, trials = _sea_and_trials(task)
     steered, everything = closed_loop(task, loop, gains, seaway.U, trials.dt), _actuator_limits(task)
-
     seas = disturbance_series(seaway, trials, seed)
 
-    def of_one(number: int) -> list[float]:
+    def of_one(number: int) -> Array:
         stages = (UNLIMITED, everything.without_stall, everything)
-        return [_rms(task, steered, seas[number], seaway, limits, seed + number) for limits in stages]
+        runs = [_trial(task, steered, seas[number], seaway, limits, seed + number) for limits in stages]
+        return np.array([*(rms for rms, _ in runs), *_hourly_energies(task, steered, runs[-1][1], seaway.U)])
 
     free = np.array(_uncontrolled_rms(task, seaway, seed))
-    return 1.0 - np.array(map_in_threads(of_one, range(len(seas)))) / free[:, None]
+    columns = np.array(map_in_threads(of_one, range(len(seas))))
+    return 1.0 - columns[:, :3] / free[:, None], columns[:, 3:]
+
+
+def _hourly_energies(task: TuningTask, run: ClosedLoop, angles: Array, U: float) -> tuple[float, float]:
+    """Return J in an hour by the drive and by the drag of the actuator's angles (n,) after the run-in, at U [m/s].
+
+    Rates are those from sample to sample of the controller, as everywhere.
+    """
+    every = 1 if run.loop.sampling is None else steps_a_sample(run.loop.sampling, run.dt)
+    step, rates = every * run.dt, actuator_rate(run, angles)[::every]
+    drive = math.nan if task.drive is None else task.drive.hourly_energy(rates, step)
+    return drive, math.nan if task.surface is None else task.surface.hourly_energy(float(np.mean(angles**2)), U)
 
 
 def _sea_and_trials(task: TuningTask) -> tuple[Seaway, SimulationSettings]:
@@ -102,18 +120,24 @@ def _uncontrolled_rms(task: TuningTask, seaway: Seaway, seed: int) -> tuple[floa
     assert task.simulation is not None
     still = closed_loop(task, task.loop, np.zeros(len(task.loop.terms)), seaway.U, task.simulation.dt)
     seas = list(disturbance_series(seaway, task.simulation, seed))
-    made = tuple(map_in_threads(lambda sea: _rms(task, still, sea, seaway, UNLIMITED, seed), seas))
+    made = tuple(map_in_threads(lambda sea: _trial(task, still, sea, seaway, UNLIMITED, seed)[0], seas))
     if not min(made) > 0.0:
         raise InputError(f"the sea '{seaway.description}' does not move the ship; take another heading or a higher sea")
     return made
 
 
-def _rms(task: TuningTask, run: ClosedLoop, sea: Array, seaway: Seaway, limits: ActuatorLimits, seed: int) -> float:
-    """Return the rms of the motion that counts of a run in a sea (1 + p, n), after the run-in; seed: of the noise."""
+def _trial(
+    task: TuningTask, run: ClosedLoop, sea: Array, seaway: Seaway, limits: ActuatorLimits, seed: int
+) -> tuple[float, Array]:
+    """Return the rms of the motion that counts and the actuator's angles of a run in a sea (1 + p, n).
+
+    After the run-in; seed: of the noise.
+    """
     sampling = run.loop.sampling
     noise = None if sampling is None else sample_noise(sampling, sea.shape[1], seed)
-    states, _ = run.run(*_disturbed_by(run, sea, seaway, limits), noise=noise)
-    return float(np.std(_motion(task, run, states, sea, seaway)[round(RUN_IN_SECONDS / run.dt) :]))
+    states, angles = run.run(*_disturbed_by(run, sea, seaway, limits), noise=noise)
+    first = round(RUN_IN_SECONDS / run.dt)
+    return float(np.std(_motion(task, run, states, sea, seaway)[first:])), angles[first:]
 
 
 def _disturbed_by(
@@ -163,7 +187,20 @@ def compare_pairwise(chosen: SeawaySimulation, other: SeawaySimulation, stage: s
     columns = ("linear", "limited", "stalled")
     if stage not in columns:
         raise InputError(f"controllers in simulation are compared {', '.join(columns)}, not '{stage}'")
-    one, two = getattr(chosen, stage), getattr(other, stage)
+    return _paired_difference(chosen, other, stage, getattr(chosen, stage), getattr(other, stage))
+
+
+def energy_saving(chosen: SeawaySimulation, other: SeawaySimulation) -> PairedDifference:
+    """J in an hour that one controller needs less than another, drive and drag as far as declared, sea by sea."""
+    needs = [np.sum([part for part in (one.drive_energy, one.drag_energy) if len(part)], axis=0)
+             for one in (other, chosen)]  # fmt: skip
+    return _paired_difference(chosen, other, "stalled", *needs)
+
+
+def _paired_difference(
+    chosen: SeawaySimulation, other: SeawaySimulation, stage: str, one: Array, two: Array
+) -> PairedDifference:
+    """Return one - two (n,) over seas: mean and Student's 95 % interval of the mean."""
     if one.shape != two.shape or len(one) < 2:
         raise InputError(f"'{chosen.name}' and '{other.name}' need the same seas to be compared, two or more")
     gap = one - two

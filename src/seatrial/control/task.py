@@ -23,6 +23,7 @@ from seatrial.physics.loops import (
     Block,
     EncounterSpectrum,
     HullFactor,
+    LiftingSurface,
     LoopSignal,
     Objective,
     TransferLoop,
@@ -331,7 +332,7 @@ class TuningTask:
         demand: for servo loops (autopilot, speed); None for stabilisers.
         genetic: settings of the published search, used where that method is chosen.
         sample_s: sample time of the controller on board [s]; None: as the loop allows.
-        drive: of the actuator, for its energy; None where no inertia is known.
+        drive, surface: of the actuator, for its energy; None where no inertia, no area is known.
         uncertainty: of the ships that the controllers are tried on.
         track: to be kept around the heading loop; None where none is.
         station: to be kept beside it; None where none is.
@@ -358,6 +359,7 @@ class TuningTask:
     demand: Demand | None = None
     genetic: GeneticTuning = field(default_factory=GeneticTuning)
     drive: ActuatorDrive | None = None
+    surface: LiftingSurface | None = None
     sample_s: float | None = None
     uncertainty: PlantUncertainty = PlantUncertainty()
     track: TrackDemand | None = None

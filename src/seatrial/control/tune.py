@@ -24,7 +24,7 @@ from seatrial.control.front import (
 from seatrial.control.gain_evaluation import GainChoice, GainEvaluator, NamedGains, gain_evaluator
 from seatrial.control.robustness import robustness
 from seatrial.control.schedule import schedule
-from seatrial.control.simulation import compare_pairwise, simulate_disturbances, simulate_in_seaway
+from seatrial.control.simulation import compare_pairwise, energy_saving, simulate_disturbances, simulate_in_seaway
 from seatrial.control.station.tune_station import tune_station
 from seatrial.control.task import OUTPUT, TuningTask
 from seatrial.control.track.tune_track import tune_track
@@ -106,6 +106,7 @@ def tune(
         seaway_simulations=checks.simulations,
         disturbance_simulations=checks.disturbances,
         paired_differences=checks.comparisons,
+        energy_savings=_energy_savings(checks.simulations),
         schedule=checks.schedule.points,
         schedule_trades=checks.schedule.trades,
         schedule_check=checks.schedule.check,
@@ -219,6 +220,13 @@ def _simulate_controllers(
         others.append(simulate_in_seaway(task, one.evaluator.loop, name, one.gains, seed))
     pairs = [compare_pairwise(first, other, what) for other in others for what in ("limited", "stalled")]
     return (first, *others), tuple(pairs)
+
+
+def _energy_savings(simulations: Sequence[SeawaySimulation]) -> tuple[PairedDifference, ...]:
+    """Return what the first needs less than each other; nothing where neither inertia nor area is declared."""
+    if not simulations or not (len(simulations[0].drive_energy) or len(simulations[0].drag_energy)):
+        return ()
+    return tuple(energy_saving(simulations[0], other) for other in simulations[1:])
 
 
 def _meaning(controller: Controller) -> str:

@@ -78,6 +78,12 @@ _SCHEDULE_NOTE = (
     "Cost: rms over that without control; behind it those of other gains in the same condition. Saturation: share of "
     "amplitudes beyond the limit."
 )
+_ENERGIES = {"drive": "drive_energy", "drag": "drag_energy"}
+_ENERGY_NOTE = (
+    " Energy with all limits: the drive’s from the rate of the actuator (Yu et al. 2014, eq. (3)), the drag of its "
+    "surfaces at the hull (Whicker & Fehlner 1958), without losses of the propulsion. What rolling costs the main "
+    "engine is left out: no source gives it."
+)
 _STAGES = {"without limits": "linear", "with limits of angle and rate": "limited", "with stall, too": "stalled"}
 """How a seaway was simulated, and the attribute that has its reductions."""
 
@@ -203,9 +209,16 @@ def _simulation(tuning: Tuning) -> Section:
     runs = tuning.seaway_simulations
     if not runs:
         return Section("")
+    energies = {f"{part}, MJ/h": key for part, key in _ENERGIES.items() if len(getattr(runs[0], key))}
     rows = [
-        (s.name, *(fixed(100.0 * float(np.mean(getattr(s, stage))), 1) for stage in _STAGES.values())) for s in runs
-    ]
+        (
+            tuning.shared_names[s.name],
+            *(fixed(100.0 * float(np.mean(getattr(s, stage))), 1) for stage in _STAGES.values()),
+            *(tuning_text.megajoules(float(np.mean(getattr(s, key)))) for key in energies.values()),
+        )
+        for s in runs
+        if s.name in tuning.shared_names
+    ]  # fmt: skip
     seeds = len(runs[0].linear)
     seas = f"{tuning_text.realisations(tuning, seeds)}{'' if seeds == 1 else ', the same for every controller'}"
     pictures = [
@@ -216,8 +229,8 @@ def _simulation(tuning: Tuning) -> Section:
     return Section(
         "Simulation with limits and stall",
         "simulation",
-        table=plain_table(("reduction of the rms, %", *_STAGES), rows),
-        note=f"Mean over {seas}.",
+        table=plain_table(("reduction of the rms, %", *_STAGES, *energies), rows),
+        note=f"Mean over {seas}.{_ENERGY_NOTE if energies else ''}",
         pictures=tuple(pictures),
     )
 

@@ -289,10 +289,12 @@ def robustness_rows(tuning: Tuning) -> list[tuple[str, ...]]:
     """Return of each controller: stable draws, their largest Ms, stable corners, their largest Ms, the worst corner."""
     return [
         (
-            r.controller, f"{r.stable_draws} of {r.draws}" if r.draws else DASH, _ratio_text(r.draws_Ms, 2),
+            tuning.shared_names[r.controller],
+            f"{r.stable_draws} of {r.draws}" if r.draws else DASH, _ratio_text(r.draws_Ms, 2),
             f"{r.stable_corners} of {r.corners}", _ratio_text(r.corners_Ms, 2), r.worst_corner,
         )
         for r in tuning.robustness
+        if r.controller in tuning.shared_names
     ]  # fmt: skip
 
 

@@ -23,6 +23,7 @@ from seatrial.data.folder.gains_file import channel_display_unit
 from seatrial.reporting.section import KeyFact
 from seatrial.reporting.station_part import precision_sentence
 
+_MEGAJOULE = 1e6  # J in 1 MJ, by definition
 _SIMULATION_LABELS = {"limited": "with angle and rate limits", "stalled": "with stall, too", "linear": "without limits"}
 
 
@@ -47,6 +48,7 @@ def key_facts(tuning: Tuning) -> tuple[KeyFact, ...]:
         KeyFact("Simulated", _simulation(tuning), "simulation"),
         KeyFact("Compared", " ".join(map(comparison_sentence, pairs)), "simulation",
                 _is_better(pairs)),
+        KeyFact("Energy", _energy(tuning), "simulation"),
         KeyFact("Demands", " ".join(demands), "manoeuvres"),
         KeyFact("Track", guidance_sentence(tuning.track) if tuning.track else "", "track",
                 _holds_draws(tuning.track.corner) if tuning.track else None),
@@ -238,6 +240,35 @@ def _simulation(tuning: Tuning) -> str:
     if math.isfinite(tuning.constraints.stall):
         text += f"; with stall beyond {_limit_text(tuning.actuator, tuning.constraints.stall)}, by {percent(stalled)}"
     return f"{text}."
+
+
+def _energy(tuning: Tuning) -> str:
+    """Return what the actuator takes in an hour, and what that saves against given gains."""
+    s = _simulated(tuning)
+    if s is None:
+        return ""
+    parts = [(name, values) for name, values in (("drive", s.drive_energy), ("drag", s.drag_energy)) if len(values)]
+    if not parts:
+        return ""
+    needs = enumeration([f"{megajoules(float(np.mean(values)))} MJ by {name}" for name, values in parts])
+    savings = " ".join(energy_sentence(pair) for pair in tuning.energy_savings)
+    return f"With all limits the actuator takes {needs} in an hour. {savings}".rstrip()
+
+
+def megajoules(energy: float) -> str:
+    """Return an energy [J] in MJ, without its unit."""
+    return significant(energy / _MEGAJOULE, 3)
+
+
+def energy_sentence(pair: PairedDifference) -> str:
+    """Return what the chosen gains save against others; not significant where the interval contains zero."""
+    sign, word = (1.0, "less") if pair.mean > 0.0 else (-1.0, "more")
+    lower, upper = sorted((sign * pair.lower, sign * pair.upper))
+    mean = megajoules(sign * pair.mean)
+    ends = f"95 % interval {megajoules(lower)} to {megajoules(upper)}, {counted(pair.seeds, 'realisation')}"
+    if pair.lower <= 0.0 <= pair.upper:
+        return f"The difference to ‘{pair.baseline}’ is not significant: {mean} MJ {word} ({ends})."
+    return f"That is {mean} MJ {word} than by ‘{pair.baseline}’ ({ends})."
 
 
 def comparison_sentence(pair: PairedDifference) -> str:

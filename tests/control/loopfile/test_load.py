@@ -16,8 +16,9 @@ from seatrial.control.loopfile.load import tuning_task
 from seatrial.control.loopfile.schema import loop_schema
 from seatrial.control.task import Effectiveness, Seaway, SimulationSettings, SlowDisturbance
 from seatrial.core.values import InputError
-from seatrial.physics.loops import HullFactor, LoopSignal, Sampling, YawAcceleration
+from seatrial.physics.loops import ActuatorDrive, HullFactor, LiftingSurface, LoopSignal, Sampling, YawAcceleration
 from seatrial.physics.loops.discrete import default_sample_time
+from seatrial.physics.loops.objective import hourly_energy
 from seatrial.physics.loops.performance import calm_actuator
 from seatrial.physics.loops.structures import GYRO, SERVO, Preamplifier, fin_loop
 from seatrial.physics.sea.spectrum import sea_state
@@ -214,6 +215,14 @@ minimise = ["roll", "fin", "fin_rate", "fin_off_target", "output_acceleration",
     assert off(np.array([[2.0 * target]]))[0] == pytest.approx(target**2)
     both_sides = task.objectives[7].value(np.array([[0.0]]))[0]
     assert both_sides == pytest.approx(math.radians(10.0) ** 4)
+
+
+def test_energy_is_that_of_drive_and_drag_at_the_speed_of_the_sea(tmp_path: Path) -> None:
+    declared = ("[actuator]", "[actuator]\ninertia = 800.0\nefficiency = 0.8\narea = 5.0\naspect_ratio = 1.0")
+    task = tuning_task(write_loop_file(tmp_path, 'minimise = ["roll", "energy"]' + FIN, declared))
+    expected = hourly_energy(ActuatorDrive(800.0, 0.8), LiftingSurface(5.0, 1.0), task.U)
+    v = np.array([[0.02, 0.01, 0.03]])
+    assert task.objectives[1].value(v) == expected.value(v)
 
 
 def test_blocks_and_filters_stand_where_they_are_written(tmp_path: Path) -> None:

@@ -84,6 +84,8 @@ KIND = 'kind = "yu2014"'
         ([("[actuator]", "[simulation]\nduration = 1e12\n[actuator]")], "simulation: 20 seas of 1e+12 s"),
         ([("[plant]", 'minimise = ["yaw"]\n[plant]')], "minimise[1].name = 'yaw'"),
         ([("[plant]", 'minimise = ["motion_sickness"]\n[plant]')], "minimise[1]: 'motion_sickness' needs lever"),
+        ([("[plant]", 'minimise = ["energy"]\n[plant]')], "minimise[1]: 'energy' needs [actuator] inertia"),
+        ([("[actuator]", "[actuator]\narea = 5.0")], "needs both area and aspect_ratio"),
         (
             [("[plant]", 'minimise = ["fin_off_target"]\n[plant]'), ('limit = { value = 22, unit = "deg" }', "")],
             "minimise[1]: there is neither a target nor an [actuator] limit",

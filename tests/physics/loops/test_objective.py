@@ -10,6 +10,7 @@ from seatrial.physics.hydro.excitation import G
 from seatrial.physics.loops import (
     ActuatorDrive,
     HullFactor,
+    LiftingSurface,
     LoopSignal,
     Objective,
     Performance,
@@ -17,6 +18,7 @@ from seatrial.physics.loops import (
     sea_disturbance,
 )
 from seatrial.physics.loops.objective import (
+    hourly_energy,
     motion_interruptions,
     motion_sickness,
     motion_sickness_at,
@@ -169,3 +171,32 @@ def test_a_harmonic_turns_back_twice_a_period() -> None:
 def test_a_reversal_costs_the_kinetic_energy_of_its_peak_over_the_efficiency() -> None:
     peak = 0.3
     assert ActuatorDrive(800.0, 0.8).energy(peak**2 / 2.0) == pytest.approx(0.5 * 800.0 * peak**2 / 0.8)
+
+
+def test_the_energy_of_a_swinging_drive_is_that_of_its_reversals() -> None:
+    drive, dt, omega, amplitude = ActuatorDrive(800.0, 0.8), 0.01, 2.0 * math.pi / 8.0, 0.2
+    rates = amplitude * omega * np.sin(omega * dt * np.arange(1 + round(3600.0 / dt)))
+    reversals = 2.0 * 3600.0 * omega / (2.0 * math.pi)
+    peak = amplitude * omega
+    assert drive.hourly_energy(rates, dt) == pytest.approx(reversals * 0.5 * 800.0 * peak**2 / 0.8, rel=1e-3)
+
+
+def test_the_drag_of_fins_is_that_of_whicker_and_fehlner() -> None:
+    """Aspect ratio 3: slope 1.8 pi 3 / (1.8 + sqrt(13)) = 3.13836 a radian, by hand."""
+    surface = LiftingSurface(5.0, 3.0)
+    rise = 3.13836**2 / (0.9 * math.pi * 3.0)
+    by_hand = 0.5 * 1025.0 * 8.0**3 * 5.0 * rise * 0.02 * 3600.0
+    assert surface.hourly_energy(0.02, 8.0) == pytest.approx(by_hand, rel=1e-4)
+    assert surface.hourly_energy(0.02, 16.0) == pytest.approx(8.0 * by_hand, rel=1e-4)
+
+
+def test_the_energy_objective_adds_drive_and_drag_and_knows_its_slopes() -> None:
+    drive, surface = ActuatorDrive(800.0, 0.8), LiftingSurface(5.0, 3.0)
+    both, v = hourly_energy(drive, surface, 8.0), np.array([[0.02, 0.01, 0.03]])
+    turned = drive.energy(0.01) * reversals_per_hour(math.sqrt(0.01), math.sqrt(0.03))
+    assert both.value(v)[0] == pytest.approx(turned + surface.hourly_energy(0.02, 8.0))
+    steps = 1e-6 * np.eye(3)
+    differences = [(both.value(v + s)[0] - both.value(v - s)[0]) / 2e-6 for s in steps]
+    np.testing.assert_allclose(both.gradient(v)[0], differences, rtol=1e-6)
+    assert both.value(np.zeros((1, 3)))[0] == 0.0
+    assert np.all(np.isfinite(both.gradient(np.zeros((1, 3)))))

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from seatrial.control.actuator_log import actuator_response, logged_records
 from seatrial.control.loopfile.disturbances import loop_disturbances, point_motions, refuse_calm, schedule_grid
 from seatrial.control.loopfile.loop import extended_structure, loop_from_tables, objective, objective_places
 from seatrial.control.loopfile.plant import (
@@ -21,6 +22,7 @@ from seatrial.control.loopfile.plant import (
 )
 from seatrial.control.loopfile.schema import (
     ActuatorTable,
+    BlockTable,
     DemandTable,
     LoopFile,
     ObjectiveTable,
@@ -52,9 +54,10 @@ from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError, spelling_hint
 from seatrial.core.values.files import parse_toml, read_table_text, refuse_absurd_numbers
 from seatrial.data.folder.model_file import ModelFile
-from seatrial.data.trial.amounts import schema_error
-from seatrial.physics.loops import ActuatorDrive, Block, Objective, Sampling, TransferLoop
+from seatrial.data.trial.amounts import Amount, schema_error
+from seatrial.physics.loops import ActuatorDrive, Block, LiftingSurface, Objective, Sampling, TransferLoop
 from seatrial.physics.loops.discrete import default_sample_time, ringing_blocks, round_sample_time
+from seatrial.physics.loops.objective import hourly_energy
 from seatrial.physics.models.thruster_layout import layout_of
 from seatrial.physics.simulate.closed_loop import simulation_step
 
@@ -92,6 +95,7 @@ def tuning_task(path: Path, own_model: Model | None = None, model_file: Path | M
     try:
         home = path.resolve().parent
         plant = plant_from_table(file.plant, home, own_model, model_file)
+        file, plant = _with_logged_actuator(file, plant, home)
         task = _task_from_tables(file, plant, home)
         if task.schedule_grid is None or task.demand is None:
             return task
@@ -106,6 +110,37 @@ def tuning_task(path: Path, own_model: Model | None = None, model_file: Path | M
         return replace(task, at_speed=lru_cache(at_speed))
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
+
+
+def _with_logged_actuator(file: LoopFile, plant: LoopPlant, home: Path) -> tuple[LoopFile, LoopPlant]:
+    """Return the tables with rate, dead time and lag of the actuator's log where they stand in none, and what it shows.
+
+    The lag is the servo of controllers that bring none.
+    """
+    table = file.actuator
+    if not table.log:
+        return file, plant
+    path = home / table.log
+    try:
+        response = actuator_response(logged_records(path), plant.actuator)
+    except InputError as error:
+        raise InputError(f"actuator.log: {error}") from None
+    fitted: dict[str, object] = {}
+    if table.rate is None and math.isfinite(response.rate):
+        fitted["rate"] = Amount(value=response.rate)
+    if table.dead_time is None and response.dead_time > 0.0:
+        fitted["dead_time"] = Amount(value=response.dead_time)
+    if not table.servo and file.controller.kind != "yu2014":
+        fitted["servo"] = (BlockTable(lag=Amount(value=response.lag), name="lag of the actuator", source=table.log),)
+    uncertainty = file.uncertainty
+    if uncertainty.dead_time is None and "dead_time" in fitted:
+        latest = Amount(value=response.dead_time + response.dead_time_error)
+        uncertainty = uncertainty.model_copy(update={"dead_time": latest})
+    described = f"{plant.description}; {response.sentence(plant.actuator)}"
+    return (
+        file.model_copy(update={"actuator": table.model_copy(update=fitted), "uncertainty": uncertainty}),
+        replace(plant, description=described),
+    )
 
 
 def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTask:
@@ -128,7 +163,13 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
     refuse_calm(met, loop, plan)
     if demand is None:
         refuse_wild_motion(met, loop, plant)
-    objectives = tuple(objective(aim, plant, restriction, f"minimise[{i}]") for i, aim in enumerate(file.minimise, 1))
+    drive, surface = _drive(file.actuator), _surface(file.actuator)
+    objectives = tuple(
+        _energy_objective(drive, surface, met, where)
+        if aim.name == "energy"
+        else objective(aim, plant, restriction, where)
+        for where, aim in ((f"minimise[{i}]", aim) for i, aim in enumerate(file.minimise, 1))
+    )
     _refuse_duplicates(file.minimise, objectives)
     task = TuningTask(
         question=file.question,
@@ -150,7 +191,8 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
         trimmed_ship=plant.trimmed_ship,
         demand=demand,
         genetic=file.genetic,
-        drive=_drive(file.actuator),
+        drive=drive,
+        surface=surface,
         uncertainty=_uncertainty(file),
         track=None if file.track is None else _track(file.track, plant, demand),
         station=None if file.station is None else _station(file.station, file, plant),
@@ -228,6 +270,33 @@ def _drive(table: ActuatorTable) -> ActuatorDrive | None:
     if table.inertia is None:
         return None
     return ActuatorDrive(positive_value(table.inertia, "kg m^2", "actuator.inertia"), table.efficiency)
+
+
+def _surface(table: ActuatorTable) -> LiftingSurface | None:
+    """Return what the actuator turns in the water; None where no area is declared."""
+    if (table.area is None) is not (table.aspect_ratio is None):
+        raise InputError("actuator: the drag of fins or rudders needs both area and aspect_ratio; add the other")
+    if table.area is None or table.aspect_ratio is None:
+        return None
+    return LiftingSurface(positive_value(table.area, "m^2", "actuator.area"), table.aspect_ratio)
+
+
+def _energy_objective(
+    drive: ActuatorDrive | None,
+    surface: LiftingSurface | None,
+    disturbances: Sequence[Seaway | SlowDisturbance],
+    where: str,
+) -> Objective:
+    """Return the energy of the actuator at the one speed of all disturbances."""
+    if drive is None and surface is None:
+        raise InputError(f"{where}: 'energy' needs [actuator] inertia, or area and aspect_ratio; add them")
+    speeds = sorted({disturbance.U for disturbance in disturbances})
+    if surface is not None and len(speeds) > 1:
+        raise InputError(
+            f"{where}: the drag of 'energy' belongs to one speed, and the disturbances have {len(speeds)}; give all "
+            "the same speed"
+        )
+    return hourly_energy(drive, surface, speeds[0])
 
 
 def _baselines(baselines: Mapping[str, Mapping[str, float]], loop: TransferLoop) -> dict[str, Mapping[str, float]]:

@@ -276,15 +276,20 @@ class ExtendedStructureTable(StrictTable):
 class ActuatorTable(StrictTable):
     """`[actuator]`: largest excursion from the steady value, largest rate, angle of stall, and the servo's blocks.
 
-    `dead_time` in s; `inertia` about the stock in kg m^2 and `efficiency` of the drive, for its energy.
+    `dead_time` in s; `inertia` about the stocks in kg m^2 and `efficiency` of the drive, `area` and effective
+    `aspect_ratio` of fins or rudders, for the energy. `log`: a file with ordered and actual angles, from which
+    rate, dead time and lag are taken that do not stand here.
     """
 
     limit: SiAmount | None = None
     rate: SiAmount | None = None
     stall: Radians | None = None
     dead_time: Seconds | None = None
+    log: str = ""
     inertia: Annotated[SiAmount, Field(json_schema_extra={"x-unit": "kg m^2"})] | None = None
     efficiency: Annotated[float, Field(gt=0, le=1)] = 1.0
+    area: Annotated[SiAmount, Field(json_schema_extra={"x-unit": "m^2"})] | None = None
+    aspect_ratio: Positive | None = None
     servo: tuple[BlockTable, ...] = ()
 
 
@@ -322,7 +327,7 @@ class HullTable(StrictTable):
 ObjectiveName = Literal[
     "output", "output_rate", "output_acceleration", "actuator", "actuator_rate", "actuator_off_target",
     "roll", "roll_rate", "fin", "fin_rate", "fin_off_target", "motion_interruptions", "motion_sickness",
-    "vertical_acceleration", "motion_sickness_dose",
+    "vertical_acceleration", "motion_sickness_dose", "energy",
 ]  # fmt: skip
 
 

@@ -1,7 +1,7 @@
 """A tuned controller: judged in theory and in simulation, the search, the front, the choice, the schedule. SI."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated
 
@@ -302,6 +302,16 @@ class SeawaySimulation:
             "without control, its name with _uncontrolled"
         ),
     ]
+    drive_energy: Annotated[
+        ListedArray, Field(description="J in an hour by the drive, all limits on; empty: no inertia was declared")
+    ] = field(default_factory=lambda: np.empty(0))
+    drag_energy: Annotated[
+        ListedArray,
+        Field(
+            description="J in an hour by the drag of fins or rudders, all limits on, without losses of the propulsion; "
+            "empty: no area was declared"
+        ),
+    ] = field(default_factory=lambda: np.empty(0))
 
     @computed_field(description="reduction lost to limits of angle and rate, mean over the seeds")
     @property
@@ -417,6 +427,16 @@ class TrackKeeping:
     corner: CornerResponse
 
 
+_EQUAL_GAINS = 1e-3  # share of a gain by which controllers that count as equal differ at most; chosen
+
+
+def _has_equal_gains(one: Controller, other: Controller) -> bool:
+    """Return whether two controllers have the same terms and gains."""
+    return one.gains.keys() == other.gains.keys() and all(
+        math.isclose(value, other.gains[name], rel_tol=_EQUAL_GAINS) for name, value in one.gains.items()
+    )
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Tuning(Summarised):
     """A tuned controller with everything its page shows."""
@@ -473,12 +493,29 @@ class Tuning(Summarised):
     robustness: Annotated[
         tuple[Robustness, ...], Field(description="of the stable controllers compared, the chosen one first")
     ] = ()
+    energy_savings: Annotated[
+        tuple[PairedDifference, ...],
+        Field(description="J in an hour that the chosen gains need less than others in the same seas, all limits on"),
+    ] = ()
     track: Annotated[TrackKeeping | None, Field(description="guidance along a track; null: none")] = None
     station: Annotated[StationKeeping | None, Field(description="a place kept by thrusters; null: none")] = None
 
     @property
     def compared(self) -> tuple[Controller, ...]:
-        """Return the chosen controller, the package's own where it is another, and the baselines."""
+        """Return the chosen controller, the package's own, designs and baselines; equal ones as one, of all names."""
+        return tuple(replace(c, name=self.shared_names[c.name]) for c in self._named if c.name in self.shared_names)
+
+    @property
+    def shared_names(self) -> dict[str, str]:
+        """Return of each first of equal controllers its name with those of the others."""
+        groups: list[list[Controller]] = []
+        for c in self._named:
+            group = next((group for group in groups if _has_equal_gains(group[0], c)), None)
+            groups.append([c]) if group is None else group.append(c)
+        return {group[0].name: ", ".join(c.name for c in group) for group in groups}
+
+    @property
+    def _named(self) -> tuple[Controller, ...]:
         return (self.chosen, *(() if self.reference is None else (self.reference,)), *self.designs, *self.baselines)
 
     @property

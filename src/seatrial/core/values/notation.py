@@ -191,6 +191,10 @@ _TABLE = [
     Quantity("psi_ref", "ordered heading", "rad", "earth", "starboard", r"\psi_{ref}", "ordered_heading"),
     Quantity("r_ref", "ordered yaw rate", "rad/s", "body", "starboard", "r_{ref}", "ordered_yaw_rate"),
     Quantity("phi_ref", "ordered roll angle", "rad", "body", "starboard", r"\phi_{ref}", "ordered_roll_angle"),
+    Quantity("delta_ref", "ordered rudder or nozzle angle", "rad", "body", "starboard", r"\delta_{ref}",
+             "ordered_rudder_angle"),
+    Quantity("alpha_f_ref", "ordered angle of the roll fins", "rad", "body", "starboard", r"\alpha_{f,ref}",
+             "ordered_roll_fin_angle"),
     Quantity("voltage", "voltage of the batteries", "V", "none", "none", "V", "battery_voltage"),
     *(
         Quantity(f"{letter}_{k}", f"{meaning} {k}", unit, frame, positive, rf"{latex}_{{{k}}}", f"{name}_{k}")
@@ -206,8 +210,8 @@ _TABLE = [
 COMMANDS = tuple(f"{letter}_{k}" for letter in ("command", "alpha", "rpm") for k in _INDEXED)
 """Channels of thrusters: what is ordered or follows an order, never a measurement to be smoothed."""
 
-REFERENCES = ("psi_ref", "r_ref", "phi_ref")
-"""Channels of what a controller is ordered to hold."""
+REFERENCES = ("psi_ref", "r_ref", "phi_ref", "delta_ref", "alpha_f_ref")
+"""Channels of what a controller, a steering gear or fins are ordered to hold."""
 
 # positive direction -> its opposite, both ways
 _PAIRS = {

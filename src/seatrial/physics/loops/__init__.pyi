@@ -1,6 +1,7 @@
 """Names of this package, imported when first used."""
 
 from seatrial.physics.loops.objective import ActuatorDrive as ActuatorDrive
+from seatrial.physics.loops.objective import LiftingSurface as LiftingSurface
 from seatrial.physics.loops.objective import (
     reversals_per_hour as reversals_per_hour,
     SECONDS_PER_HOUR as SECONDS_PER_HOUR,

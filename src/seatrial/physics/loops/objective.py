@@ -12,9 +12,10 @@ from scipy.special import ndtr
 from seatrial.core.values import Array
 from seatrial.physics.hydro.excitation import G
 
-# What an actuator's drive does in a sea: reversals, their energy, the power.
+# What moving an actuator costs in a sea: reversals and energy of its drive, drag of its surfaces.
 
 SECONDS_PER_HOUR = 3600.0  # s, by definition
+SEA_WATER = 1025.0  # kg/m^3, ITTC 7.5-02-01-03 at 15 degrees, rounded
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,41 @@ class ActuatorDrive:
         """
         return self.inertia * rate_variance / self.efficiency
 
+    def hourly_energy(self, rates: Array, dt: float) -> float:
+        """Return the energy [J] in an hour of rates (n,) [rad/s] every dt [s]: I peak^2 / 2 between two reversals.
+
+        The peak is that of the rate; steps of the order within a swing take no energy of their own.
+        """
+        turns = 1 + np.flatnonzero(np.diff(np.signbit(rates)))
+        peaks = np.maximum.reduceat(rates**2, np.concatenate([[0], turns]))
+        return float(0.5 * self.inertia * peaks.sum() / self.efficiency * SECONDS_PER_HOUR / (dt * len(rates)))
+
+
+@dataclass(frozen=True)
+class LiftingSurface:
+    """Fins or rudders that are turned: their area together [m^2], effective aspect ratio (twice that at a hull).
+
+    Lift and drag are those of an unswept surface by Whicker & Fehlner 1958, DTMB Report 933: C_L = slope times angle,
+    slope 1.8 pi a / (1.8 + sqrt(a^2 + 4)), and C_D rises by C_L^2 / (0.9 pi a). The angle is that of the actuator.
+    """
+
+    area: float
+    aspect_ratio: float
+
+    def hourly_energy(self, angle_variance: float, U: float) -> float:
+        """Return the energy [J] in an hour of the drag by angles of that variance [rad^2] at U [m/s], at the hull.
+
+        The propulsion's losses come on top. Beyond stall the drag is larger.
+        """
+        return self._drag_factor * angle_variance * 0.5 * SEA_WATER * U**3 * self.area * SECONDS_PER_HOUR
+
+    @property
+    def _drag_factor(self) -> float:
+        """Return C_D - C_D0 for each rad^2."""
+        a = self.aspect_ratio
+        slope = 1.8 * math.pi * a / (1.8 + math.sqrt(a**2 + 4.0))  # Whicker & Fehlner 1958, as above
+        return slope**2 / (0.9 * math.pi * a)  # Oswald factor 0.9, Whicker & Fehlner 1958
+
 
 def reversals_per_hour(rate_rms: float, acceleration_rms: float) -> float:
     """Return how often a Gaussian angle turns back in an hour: two a zero up-crossing of its rate (Rice 1945, Bell
@@ -41,6 +77,9 @@ def reversals_per_hour(rate_rms: float, acceleration_rms: float) -> float:
 
 
 # What a loop is tuned for: variances of what it does in a sea, and what crews make of them.
+
+
+_LEAST_VARIANCE = 1e-300  # of an actuator at rest, by which nothing is divided: rounding
 
 
 class LoopSignal(Enum):
@@ -91,6 +130,29 @@ def _first_variance(variances: Array) -> Array:
 def variance(name: str, unit: str, signal: LoopSignal, power: int = 0) -> Objective:
     """Return the variance of the output or the actuator (power 0), of its rate (1), of its acceleration (2)."""
     return Objective(name, unit, (WeightedVariance(signal, _frequency_power(power)),), _first_variance, np.ones_like)
+
+
+ENERGY = "energy of the actuator in an hour"
+
+
+def hourly_energy(drive: ActuatorDrive | None, surface: LiftingSurface | None, U: float) -> Objective:
+    """Return the energy [J] in an hour that a Gaussian actuator takes at U [m/s], of drive and drag."""
+    reversal = 0.0 if drive is None else SECONDS_PER_HOUR / math.pi * drive.energy(1.0)
+    drag = 0.0 if surface is None else surface.hourly_energy(1.0, U)
+
+    def value(v: Array) -> Array:
+        # the drive: I var(rate) / eta a reversal, reversals by Rice 1945
+        with np.errstate(invalid="ignore"):
+            energy = drag * v[:, 0] + reversal * np.sqrt(v[:, 1] * v[:, 2])
+        return np.where(np.isfinite(v[:, 0]), energy, np.inf)
+
+    def slope(v: Array) -> Array:
+        ratio = np.sqrt(v[:, 2] / np.maximum(v[:, 1], _LEAST_VARIANCE))
+        by_acceleration = 0.5 * reversal / np.maximum(ratio, _LEAST_VARIANCE)
+        return np.stack([np.full(len(v), drag), 0.5 * reversal * ratio, by_acceleration], axis=1)
+
+    rows = tuple(WeightedVariance(LoopSignal.ACTUATOR, _frequency_power(power)) for power in (0, 1, 2))
+    return Objective(ENERGY, "J", rows, value, slope)
 
 
 def squared_deviation(name: str, signal: LoopSignal, target: float, *, one_sided: bool) -> Objective:

@@ -144,6 +144,7 @@ def _minimum(values: Array) -> float:
 
 _ORDER = (LoopSignal.OUTPUT, LoopSignal.ACTUATOR, LoopSignal.POINT)
 _MS_SAMPLES = 192  # frequencies that the peak of |S| is bracketed on; chosen
+PEAKS = 3  # of |S| that are looked at by themselves: one of the wave band and one to either side; chosen
 _STILL = 0.1, 1.0  # rad/s, band of a disturbance of no energy
 _NOISE_SAMPLES, _NOISE_DECADES = 240, 5  # frequencies of the sensor's noise, and decades up to the highest; chosen
 
@@ -303,15 +304,33 @@ class Performance:
 
     def Ms_gradient(self, gains: Array) -> Array:
         """d Ms / d gains (g,) of what `evaluate` gives, by the same parabola: its place has no first-order effect."""
+        return self.sensitivity_peaks(gains)[1][0]
+
+    def sensitivity_peaks(self, gains: Array) -> tuple[Array, Array]:
+        """Return the largest peaks of |S| over the band, largest first, and their slopes d |S| / d gains, by parabolas.
+
+        (3,) and (3, g); zero where there are fewer peaks.
+        """
         _, _, re, im = self._open_loop_tables
         terms = re + 1j * im
         z = 1.0 + gains @ terms
-        place = int(np.clip(np.argmin(np.abs(z)), 1, len(z) - 2))
-        near = np.array([z[place - 1], z[place], z[place + 1]])
+        size = np.abs(z)
+        inner = 1 + np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:]))
+        first = int(np.clip(np.argmin(size), 1, len(z) - 2))
+        places = list(dict.fromkeys([first, *inner[np.argsort(size[inner], kind="stable")].tolist()]))[:PEAKS]
+        peaks, slopes = np.zeros(PEAKS), np.zeros((PEAKS, len(gains)))
+        for row, place in enumerate(places):
+            near = slice(place - 1, place + 2)
+            peaks[row], slopes[row] = self._peak_at(terms[:, near], z[near])
+        return peaks, slopes
+
+    @staticmethod
+    def _peak_at(terms: Complex, near: Complex) -> tuple[float, Array]:
+        """Return the peak of |S| of the parabola through three samples of 1 + L, and its slopes (g,)."""
         u = _closest_to_zero(near)
         weights = np.array([0.5 * u * (u - 1.0), 1.0 - u**2, 0.5 * u * (u + 1.0)])
         at = weights @ near
-        return -np.real(np.conj(at) * (terms[:, place - 1 : place + 2] @ weights)) / np.abs(at) ** 3
+        return 1.0 / abs(at), -np.real(np.conj(at) * (terms @ weights)) / np.abs(at) ** 3
 
     @property
     def uncontrolled_variances(self) -> Array:
