@@ -18,7 +18,7 @@ DOCS = Path(__file__).parent
 PICTURES = DOCS / "pictures"
 PICTURE_FUNCTIONS: tuple[Callable[[], Figure], ...] = (
     results.held_out, results.bad_fit, results.criteria, results.log_parts, results.front, results.thrust_curve,
-    results.roll_decay, results.heave_pitch, results.designed, results.coverage,
+    results.roll_decay, results.heave_pitch, results.designed, results.coverage, results.loop_blocks,
     choices.axes_and_signs, choices.manoeuvres, choices.regressions, choices.searches, choices.entered, choices.gusts,
     choices.followed, choices.own_model, choices.both_sides,
     exports.export_casadi, exports.export_matlab, exports.export_gazebo, exports.export_ardupilot,

@@ -7,17 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
-import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
-from drawn.look import BLUE, GREEN, GREY, ORANGE, REPOSITORY, example, thinned
+from drawn.look import BLUE, GREEN, GREY, ORANGE, REPOSITORY, example, reports_figure, thinned
 from matplotlib.figure import Figure
-from matplotlib.text import Text
 
 import seatrial as st
 from seatrial import estimators
 from seatrial.api import prepared_run
-from seatrial.core.figures.matplotlib_axes import matplotlib_figure
 from seatrial.data.read import ColumnSpec, Layout
 from seatrial.physics.models import model_from_file
 from seatrial.physics.simulate import replay
@@ -91,10 +88,7 @@ def contributed_figure() -> Figure:
         next(noise.standard_deviation for noise in example("waterjet").channel_noise if noise.channel == "r")
     )
     chart = contribution("residuals_figure").residual_chart(prediction.measured.time, residuals, deviation, "r [deg/s]")
-    figure = matplotlib_figure(chart)
-    for text in figure.findobj(Text):
-        text.set_color(mpl.rcParams["text.color"])  # that is read on light and dark pages
-    return figure
+    return reports_figure(chart)
 
 
 def contributed_optimiser() -> Figure:

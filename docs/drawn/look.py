@@ -6,8 +6,15 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.text import Text
 
 import seatrial as st
+from seatrial.core.figures.chart import INK, Chart
+from seatrial.core.figures.matplotlib_axes import matplotlib_figure
 from seatrial.core.figures.run import hull_outline
 from seatrial.core.results import Fit, Prediction
 from seatrial.core.values import Array, Record
@@ -60,3 +67,18 @@ def track(axes: Axes, record: Record, length: float, look: dict) -> None:
         axes.fill(east, north, facecolor="none", edgecolor=look["color"], linewidth=0.9)
     axes.set(xlabel="east [m]", ylabel="north [m]")
     axes.set_aspect("equal", adjustable="datalim")
+
+
+def reports_figure(chart: Chart) -> Figure:
+    """A chart of the reports, its texts and black lines in a colour that is read on light and dark pages."""
+    figure, grey = matplotlib_figure(chart), mpl.rcParams["text.color"]
+    figure.set_layout_engine("none")
+    for text in figure.findobj(Text):
+        text.set_color(grey)
+    for line in figure.findobj(Line2D):
+        if line.get_color() == INK:
+            line.set_color(grey)
+    for patch in figure.findobj(Patch):
+        if to_hex(patch.get_facecolor()) == INK:
+            patch.set_color(grey)
+    return figure

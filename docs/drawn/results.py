@@ -15,15 +15,18 @@ from drawn.look import (
     SIMULATED,
     example,
     heading_with_band,
+    reports_figure,
     thinned,
     track,
 )
 from matplotlib.figure import Figure
 
 import seatrial as st
+from seatrial.control.controller import components
 from seatrial.control.front import Effort
 from seatrial.control.tune import tune
 from seatrial.physics.simulate import replay
+from seatrial.reporting.figures.control_charts import loop_diagram
 
 
 def kvlcc2_zigzag() -> Figure:
@@ -239,3 +242,11 @@ def coverage() -> Figure:
     axes.axhline(0.15, color=BLUE, linewidth=1.0)
     axes.set(xlabel="simulated trial", ylabel="gain K [1/s]", title="95 % intervals and the truth")
     return figure
+
+
+def loop_blocks() -> Figure:
+    """The loop of the fin stabiliser of the example as the report draws it."""
+    task = st.load_loop(REPOSITORY / "examples" / "fin_stabiliser.toml")
+    chart = loop_diagram(components(task.disturbances[0].disturbed(task.loop)), "phi", "alpha_f")
+    assert chart is not None
+    return reports_figure(chart)
