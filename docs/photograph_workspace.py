@@ -1,7 +1,8 @@
 """The pictures of the workspace's tour: its views over the example ship, by the machine's Chromium.
 
 `python docs/photograph_workspace.py` drafts the logs of examples/ship, fits them in the page as a user does, follows a
-log, and writes ``docs/pictures/workspace_VIEW.png``. It needs Chromium and playwright; elsewhere the committed pictures stay.
+log, and writes ``docs/pictures/workspace_VIEW.png``. It needs Chromium and playwright; else the committed
+pictures stay.
 """
 
 import io

@@ -310,8 +310,8 @@ def _one_course_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tupl
         return ()
     sessions = {r.session: [s.record for s in records if s.session == r.session] for r in records}
     by_session = {name: speed_through_water(runs) for name, runs in sessions.items()}
-    lone = [name for name, water in by_session.items() if water is not None and not water.is_separate]
-    if not lone or any(water is not None and water.is_separate for water in by_session.values()):
+    lone = [name for name, water in by_session.items() if water is not None and not water.shows_current]
+    if not lone or any(water is not None and water.shows_current for water in by_session.values()):
         return ()
     return (Finding(
         Severity.WARNING, "velocity-over-ground",
