@@ -88,7 +88,7 @@ def contributed_figure() -> Figure:
         next(noise.standard_deviation for noise in example("waterjet").channel_noise if noise.channel == "r")
     )
     chart = contribution("residuals_figure").residual_chart(prediction.measured.time, residuals, deviation, "r [deg/s]")
-    return reports_figure(chart)
+    return reports_figure(chart, 7.0)
 
 
 def contributed_optimiser() -> Figure:

@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from matplotlib.text import Text
 
 import seatrial as st
-from seatrial.core.figures.chart import INK, Chart
+from seatrial.core.figures.chart import ACCENT, INK, SECOND, Chart
 from seatrial.core.figures.matplotlib_axes import matplotlib_figure
 from seatrial.core.figures.run import hull_outline
 from seatrial.core.results import Fit, Prediction
@@ -69,15 +69,15 @@ def track(axes: Axes, record: Record, length: float, look: dict) -> None:
     axes.set_aspect("equal", adjustable="datalim")
 
 
-def reports_figure(chart: Chart) -> Figure:
-    """A chart of the reports, its texts and black lines in a colour that is read on light and dark pages."""
+def reports_figure(chart: Chart, width: float) -> Figure:
+    """A chart of the reports so wide [inch], in colours that are read on light and dark pages."""
     figure, grey = matplotlib_figure(chart), mpl.rcParams["text.color"]
     figure.set_layout_engine("none")
+    figure.set_size_inches(width, width * figure.get_figheight() / figure.get_figwidth())
     for text in figure.findobj(Text):
         text.set_color(grey)
     for line in figure.findobj(Line2D):
-        if line.get_color() == INK:
-            line.set_color(grey)
+        line.set_color({INK: grey, ACCENT: BLUE, SECOND: ORANGE}.get(line.get_color(), line.get_color()))
     for patch in figure.findobj(Patch):
         if to_hex(patch.get_facecolor()) == INK:
             patch.set_color(grey)

@@ -249,4 +249,4 @@ def loop_blocks() -> Figure:
     task = st.load_loop(REPOSITORY / "examples" / "fin_stabiliser.toml")
     chart = loop_diagram(components(task.disturbances[0].disturbed(task.loop)), "phi", "alpha_f")
     assert chart is not None
-    return reports_figure(chart)
+    return reports_figure(chart, 8.0)
