@@ -13,7 +13,7 @@ BLOCK = re.compile(r"^## (\w+)\n\n```pycon\n(.*?)^```$", re.MULTILINE | re.DOTAL
 def examples_of_names() -> dict[str, str]:
     """Return the session of each public name, as a page shows it."""
     sessions: dict[str, str] = {}
-    for page in sorted(FOLDER.glob("*.md")):
+    for page in sorted(FOLDER.glob("*.txt")):
         lines: list[doctest.Example] = []
         for name, text in BLOCK.findall(page.read_text(encoding="utf-8")):
             own = doctest.DocTestParser().get_examples(text)

@@ -1,6 +1,7 @@
 """The page that lists every key of a file: type, unit and default, from the schema of the file."""
 
 import json
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -41,13 +42,32 @@ def _references(value: JsonSchema) -> Iterator[tuple[str, str]]:
 
 
 def _table(path: str, entry: JsonSchema, schema: JsonSchema) -> str:
-    required = set(entry.get("required", ()))
+    required, meanings = set(entry.get("required", ())), _meanings(entry)
+    columns = ["key", *(["meaning"] if meanings else []), "type", "default"]
     rows = [
-        f"| `{key}` | {_type(value, schema)} | {REQUIRED if key in required else _default(value)} |"
+        [
+            f"`{key}`",
+            *([meanings.get(key, "")] if meanings else []),
+            _type(value, schema),
+            REQUIRED if key in required else _default(value),
+        ]
         for key, value in entry.get("properties", {}).items()
     ]
     heading = f"## Keys of `{path}`" if path else "## Keys outside any table"
-    return "\n".join([heading, "", "| key | type | default |", "|---|---|---|", *rows, ""])
+    table = [f"| {' | '.join(cells)} |" for cells in (columns, *rows)]
+    return "\n".join([heading, "", table[0], "|" + "---|" * len(columns), *table[1:], ""])
+
+
+def _meanings(entry: JsonSchema) -> dict[str, str]:
+    """Return what each key means, from the section Attributes of the docstring of its table."""
+    listed = entry.get("description", "").partition("Attributes:\n")[2]
+    keys = "|".join(f"{key}_?" for key in entry.get("properties", {}))
+    lines = re.sub(r"\n {5,}", " ", listed).replace("None:", "without it:").splitlines()
+    meanings: dict[str, str] = {}
+    for part in (part for line in lines for part in re.split(rf"; (?=(?:{keys}): )", line.strip())):
+        names, _, text = part.partition(": ")
+        meanings |= {name.rstrip("_"): text.rstrip(".").replace("|", "\\|") for name in names.split(", ")}
+    return meanings
 
 
 def _type(value: JsonSchema, schema: JsonSchema) -> str:

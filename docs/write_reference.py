@@ -1,4 +1,4 @@
-"""Write docs/command-line.md from the commands, docs/trial-keys.md and docs/loop-keys.md from the schemas of the files.
+"""Write docs/command-line.md from the commands, the keys of trial and loop files, and the table of notation.
 
 `python docs/write_reference.py --check` writes nothing and names each page that differs.
 """
@@ -14,6 +14,7 @@ from schema_keys import schema_keys
 
 from seatrial.cli import app
 from seatrial.control.loopfile.schema import loop_schema
+from seatrial.core.values import NOTATION
 from seatrial.data.trial.schema import trial_schema
 
 DOCS = Path(__file__).parent
@@ -24,6 +25,8 @@ orphan: true
 <!-- written by write_reference.py -->
 
 """
+NOTATION_START, NOTATION_END = "<!-- written by write_reference.py -->", "<!-- end -->"
+NOTATION_HEAD = ("symbol", "meaning", "unit", "frame", "positive")
 KEYS = """# {title}
 
 From the schema of the file; [what the keys mean]({page}) stands on a page of its own. An *amount* is a number in the
@@ -97,9 +100,20 @@ def _default(parameter: Any) -> str:
     return "" if value is None or value is False or value in ("", ()) or callable(value) else f"`{value}`"
 
 
+def _with_notation(text: str) -> str:
+    """Return the page of conventions with the notation; of numbered channels the first."""
+    shown = [q for q in NOTATION.values() if not re.search(r"_(?:[2-9]|1\d)$", q.symbol)]
+    rows = [(f"`{q.symbol}`", q.meaning, q.unit, q.frame, q.positive) for q in shown]
+    lines = [f"| {' | '.join(cells)} |\n" for cells in (NOTATION_HEAD, ("---",) * len(NOTATION_HEAD), *rows)]
+    before, rest = text.split(NOTATION_START)
+    return f"{before}{NOTATION_START}\n\n{''.join(lines)}\n{NOTATION_END}{rest.split(NOTATION_END, 1)[1]}"
+
+
 def pages() -> Iterator[tuple[Path, str]]:
     """Yield path and text of each page."""
     yield DOCS / "command-line.md", page()
+    conventions = DOCS / "conventions.md"
+    yield conventions, _with_notation(conventions.read_text(encoding="utf-8"))
     loop_unit = "Where no unit is shown it is that of the output or the actuator. "
     for kind, schema, unit in (("trial", trial_schema(), ""), ("loop", loop_schema(), loop_unit)):
         head = KEYS.format(title=f"Keys of the {kind} file", page=f"{kind}-file.md", unit=unit)

@@ -14,10 +14,11 @@ sys.path.insert(0, str(REPOSITORY / "docs"))
 from examples_of_names import examples_of_names  # noqa: E402  # a module next to the pages
 
 SESSION = re.compile(r"^```pycon\n(.*?)^```", re.MULTILINE | re.DOTALL)
-PAGES = sorted(p for p in (REPOSITORY / "docs").rglob("*.md") if SESSION.search(p.read_text(encoding="utf-8")))
-
-
-SLOW = REPOSITORY / "docs" / "name_examples" / "slow.md"
+DOCS = REPOSITORY / "docs"
+SLOW = DOCS / "name_examples" / "slow.txt"
+PAGES = sorted(
+    p for p in (*DOCS.rglob("*.md"), *SLOW.parent.glob("*.txt")) if SESSION.search(p.read_text(encoding="utf-8"))
+)
 
 
 @pytest.mark.parametrize(
@@ -35,7 +36,7 @@ def test_sessions_print_what_the_page_shows(page: Path, monkeypatch: pytest.Monk
 
 
 def test_every_public_name_has_an_example() -> None:
-    names = re.findall(r"^## (\w+)$", "".join(p.read_text(encoding="utf-8") for p in SLOW.parent.glob("*.md")), re.M)
+    names = re.findall(r"^## (\w+)$", "".join(p.read_text(encoding="utf-8") for p in SLOW.parent.glob("*.txt")), re.M)
     assert sorted(names) == sorted(seatrial.__all__)
 
 

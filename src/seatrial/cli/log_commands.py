@@ -121,7 +121,10 @@ def init(
     if draft.lacks_density:
         print_lines(["NOTE the water is taken for that of the sea, 1025 kg/m^3: if it was fresh, add --rho 1000"])
     if draft.lacks_antenna:
-        print_lines(["the GNSS antenna is taken to be at midship: state it with --antenna, metres forward of it"])
+        print_lines(
+            ["the GNSS antenna has no place yet: a fit moves it from midship where the records ask for it; state it "
+             "with --antenna, metres forward of midship"]
+        )  # fmt: skip
     print_file("trial file", out)
     print_lines([f"columns and runs in the browser: seatrial open {in_shell(out)}"])
     print_next(_after_draft(draft, out))

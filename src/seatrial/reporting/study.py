@@ -1,12 +1,13 @@
 """The page of a study: claims with verdicts, checks with limits, tables, figures, runs; nothing is computed."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
 from markupsafe import Markup
 
 from seatrial.core.figures.svg_text import svg
-from seatrial.core.results import Bars, CheckStatus, Figure, Matrix, Study, Verdict
+from seatrial.core.results import Bars, Check, CheckStatus, Figure, Matrix, Study, Verdict
 from seatrial.core.text.numbers import duration, exact
 from seatrial.core.text.words import counted, enumeration
 from seatrial.core.values import Severity
@@ -48,9 +49,9 @@ def sections(study: Study) -> tuple[Section, ...]:
     chapters = (
         Section("The answer in full", "answer", study.answer[1:], level=Level.PAGE),
         Section("Claims", "claims", table=_claims(study)),
-        Section("Checks", "checks", table=_checks(study)),
-        Section("Tables", "tables", parts=tuple(map(result_section, study.tables)), level=Level.DETAIL),
-        Section("Figures", "figures", parts=tuple(figures), level=Level.PAGE),
+        _checks(study),
+        Section("Tables", "tables", parts=tuple(map(result_section, study.tables)), level=Level.DETAIL, is_folded=True),
+        Section("Figures", "figures", parts=tuple(figures), level=Level.PAGE, is_folded=True),
         Section(
             "Runs",
             "runs",
@@ -85,9 +86,19 @@ def _claims(study: Study) -> TextTable:
     )
 
 
-def _checks(study: Study) -> TextTable:
+def _checks(study: Study) -> Section:
+    """Return the checks that fail, and folded the others."""
+    failed = [check for check in study.checks if check.status is CheckStatus.FAILS]
+    others = [check for check in study.checks if check.status is not CheckStatus.FAILS]
+    if not failed:
+        return Section("Checks", "checks", table=_check_table(others), is_folded=True)
+    more = Section("Checks that hold or are withdrawn", table=_check_table(others), is_folded=True)
+    return Section("Checks", "checks", table=_check_table(failed), parts=(more,) if others else ())
+
+
+def _check_table(checks: Sequence[Check]) -> TextTable:
     return table_of(
-        study.checks,
+        checks,
         words("Check", lambda c: c.name),
         number("Value", lambda c: exact(c.value, _CHECK_DIGITS)),
         number("Limit", lambda c: c.limit if isinstance(c.limit, str) else exact(c.limit, _CHECK_DIGITS)),
@@ -106,11 +117,10 @@ def first_screen(study: Study) -> FirstScreen:
     if study.claims:
         facts.append(KeyFact("Claims", f"{len(study.claims)} judged: {study.claim_counts}", "claims"))
     if study.checks:
-        tail = f"; failing: {enumeration(failed)}" if failed else ""
         facts.append(
             KeyFact(
                 "Checks",
-                f"{len(study.checks)}: {study.check_counts}{tail}",
+                f"{len(study.checks)}: {study.check_counts}",
                 "checks",
                 False if failed else holds or None,
             )

@@ -193,7 +193,10 @@ def approach_speed(model: Model, held: Array) -> float:
     for low, high in pairwise(speeds):
         if surge(low) > 0.0 >= surge(high):
             return float(brentq(surge, low, high, xtol=1e-12))  # m/s of rounding; chosen
-    raise InputError(f"model '{model.name}' has no steady speed ahead with these inputs; give the approach speed")
+    raise InputError(
+        f"model '{model.name}' has no steady speed ahead with these inputs; state the approach speed in m/s: "
+        "--speed on the command line, speed= in Python"
+    )
 
 
 def balancing_input(model: Model, held: Array, name: str, speed: float) -> float:
