@@ -13,11 +13,12 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array
 from seatrial.physics.models import MODELS, model_named
 from seatrial.physics.models.abkowitz import TERMS
-from seatrial.physics.models.published import QI2025_SHIP, esso_osaka, kvlcc2, theoretical_coefficients
+from seatrial.physics.models.published import QI2025_SHIP, container_ship, esso_osaka, kvlcc2, theoretical_coefficients
 
-MIRRORED = {"v", "r", "r_rest", "psi", "y0", "delta", "wind_direction"}
+MIRRORED = {"v", "r", "r_rest", "psi", "y0", "phi", "p", "delta", "alpha_w", "alpha_f", "wind_direction"}
 # parameters that change sign in the mirror; those split by side change places
-ODD = {"Y_0", "N_0", "Y_T", "N_T", "Y_dd", "N_dd", "Y_nn", "Y_nu", "N_nn", "N_nu", "delta_0", "current_east"}
+ODD = {"Y_0", "N_0", "Y_T", "N_T", "Y_dd", "N_dd", "Y_nn", "Y_nu", "N_nn", "N_nu", "delta_0", "current_east",
+       "phi_0"}  # fmt: skip
 SIDES = {"C_2_plus": "C_2_minus", "gamma_R_plus": "gamma_R_minus"}
 
 ABKOWITZ_SHIP = {"L": 7.0, "m": 3270.0, "x_G": 0.25, "I_z": 1e4, "rho": 1000.0, "U_n": 1.2}
@@ -26,7 +27,7 @@ INERTIA = {"X_udot": -0.001, "Y_vdot": -0.015, "Y_rdot": -0.001, "N_vdot": -0.00
 
 def filled(name: str, rng: np.random.Generator) -> Model:
     """The model with a value other than zero for every parameter."""
-    model = {"mmg": kvlcc2}.get(name, MODELS[name])()
+    model = {"mmg": kvlcc2, "son_nomoto": container_ship}.get(name, MODELS[name])()
     if name == "abkowitz":
         terms = {t: float(rng.normal(scale=0.01)) for t in TERMS}
         return model.with_values(ABKOWITZ_SHIP | INERTIA | {"prime": 0.7} | terms)
@@ -40,7 +41,7 @@ def filled(name: str, rng: np.random.Generator) -> Model:
             .with_values({"lift_1": 2e6, "x_f1": -25.0, "lift_2": 1e6, "x_f2": 20.0})
         )
     small = {p.name: float(rng.normal(scale=0.01)) for p in model.parameters if p.value == 0.0}
-    return model.with_values(small | ({"A_T": 0.3, "A_L": 1.1, "U_0": 0.02} if name == "mmg" else {}))
+    return model.with_values(small | ({"A_T": 0.3, "A_L": 1.1, "U_0": 0.02} if name in ("mmg", "son_nomoto") else {}))
 
 
 def call(model: Model, x: Array, u: Array, p: Array) -> Array:
@@ -77,8 +78,9 @@ def test_jacobians_equal_central_differences(model: Model, rng: np.random.Genera
             model.compiled.outputs_tangent(0.0, x, u, p, np.empty(len(g)), g)
         exact = np.vstack([jacobian, g])
         numeric = np.empty_like(exact)
+        sizes = np.maximum(np.abs(base), np.where(base == 0.0, 1e-2, np.minimum(1e-2, 100.0 * np.abs(base))))
         for j in range(columns):
-            h = 1e-6 * max(abs(base[j]), 1e-2)
+            h = 1e-6 * sizes[j]
             up, down = base.copy(), base.copy()
             up[j] += h
             down[j] -= h

@@ -9,13 +9,13 @@ v' = v / U, r' = r L / U, u' = (u - U_n) / U. `prime` = 1 takes the instantaneou
 Stroem-Tejsen 1965 for the Mariner), 0 the nominal speed U_n, which makes it a plain Taylor series.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 
 import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
-from seatrial.physics.models.forces import derivative_meaning, pose_rates
+from seatrial.physics.models.forces import derivative_meaning, pose_rates, variables_of
 
 ABKOWITZ = "Abkowitz 1964, Hydro- and Aerodynamics Laboratory report Hy-5"
 TERMS_SOURCE = "Abkowitz 1964, Taylor series; terms of Chislett & Stroem-Tejsen 1965, Hy-6"
@@ -38,14 +38,26 @@ STANDARD = (
 )  # fmt: skip
 
 
-def _series(sheet: Sheet, force: str, terms: Sequence[str], variables: dict[str, sp.Symbol]) -> sp.Expr:
+_SIZES = {"X": 0.01, "Y": 0.01, "N": 0.01, "K": 1e-4}
+"""Characteristic size of a dimensionless coefficient of a force; roll arms are some hundredths of L; chosen."""
+
+
+def taylor_series(
+    sheet: Sheet, force: str, terms: Sequence[str], variables: Mapping[str, sp.Symbol], free: Sequence[str] = ()
+) -> sp.Expr:
+    """Return the dimensionless sum of coefficient times variables over these terms of a force X, Y, K or N.
+
+    variables: letter of a term, or ``phi`` -> symbol. free: names of coefficients that are free.
+    """
     total = sp.Integer(0)
     for term in terms:
-        sub = term.replace("d", r"\delta")
-        meaning = derivative_meaning(f"{force}_{term}")
-        # 0.01: characteristic size of a dimensionless coefficient; chosen
-        coefficient = sheet.parameter(f"{force}_{term}", 0.0, meaning=meaning, latex=f"{force}'_{{{sub}}}", scale=0.01)
-        total += coefficient * sp.Mul(*(variables[letter] for letter in term.replace("0", "")))
+        name, letters = f"{force}_{term}", variables_of(term)
+        sub = "".join({"d": r"\delta", "phi": r"\phi "}.get(letter, letter) for letter in letters)
+        coefficient = sheet.parameter(
+            name, 0.0, meaning=derivative_meaning(name), free=name in free, scale=_SIZES[force],
+            latex=f"{force}'_{{{sub or term}}}",
+        )  # fmt: skip
+        total += coefficient * sp.Mul(*(variables[letter] for letter in letters))
     return total
 
 
@@ -75,9 +87,9 @@ def _full_model() -> Model:
         "d": sheet.bind("delta_R", delta + delta_0, "rudder angle with its zero", "rad"),
     }
     q = sheet.bind("q", rho / 2 * L**2 * U**2, SNAME, "N")
-    X = sheet.bind("X_sum", q * _series(sheet, "X", X_TERMS, variables), TERMS_SOURCE, "N")
-    Y = sheet.bind("Y_sum", q * _series(sheet, "Y", Y_TERMS, variables), TERMS_SOURCE, "N")
-    N = sheet.bind("N_sum", q * L * _series(sheet, "N", N_TERMS, variables), TERMS_SOURCE, "N m")
+    X = sheet.bind("X_sum", q * taylor_series(sheet, "X", X_TERMS, variables), TERMS_SOURCE, "N")
+    Y = sheet.bind("Y_sum", q * taylor_series(sheet, "Y", Y_TERMS, variables), TERMS_SOURCE, "N")
+    N = sheet.bind("N_sum", q * L * taylor_series(sheet, "N", N_TERMS, variables), TERMS_SOURCE, "N m")
     unit_mass = sheet.bind("m_L", rho / 2 * L**3, SNAME, "kg")
     M_vv = sheet.bind("M_vv", m - Y_vdot * unit_mass, "Abkowitz 1964, inertia matrix", "kg")
     M_vr = sheet.bind("M_vr", m * x_G - Y_rdot * unit_mass * L, "Abkowitz 1964, inertia matrix", "kg m")

@@ -1,5 +1,6 @@
 """Kinematics and forces that models share: pose, rudder, wind; and what a derivative's name means."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import groupby
@@ -10,8 +11,13 @@ from seatrial.core.equations import Sheet
 
 # What a hydrodynamic coefficient stands for, from its name: ``Y_vvr`` multiplies v^2 r in the sway force.
 
-_FORCES = {"X": "surge force", "Y": "sway force", "N": "yaw moment", "R": "resistance"}
+_FORCES = {"X": "surge force", "Y": "sway force", "K": "roll moment", "N": "yaw moment", "R": "resistance"}
 _VARIABLES = {"d": "delta"}
+
+
+def variables_of(term: str) -> list[str]:
+    """Return the variables that a coefficient multiplies, from the letters behind its underscore: ``vvphi``."""
+    return re.findall("phi|[a-z]", term)
 
 
 def derivative_meaning(name: str, term: str = "") -> str:
@@ -20,7 +26,7 @@ def derivative_meaning(name: str, term: str = "") -> str:
     term: what it multiplies, where that is not the product of the letters behind the underscore, such as ``v|v|``.
     """
     force, _, letters = name.partition("_")
-    powers = ((_VARIABLES.get(letter, letter), len(list(same))) for letter, same in groupby(letters.replace("0", "")))
+    powers = ((_VARIABLES.get(letter, letter), len(list(same))) for letter, same in groupby(variables_of(letters)))
     product = term or " ".join(f"{letter}^{power}" if power > 1 else letter for letter, power in powers)
     return f"{_FORCES[force]} from {product}" if product else f"{_FORCES[force]} straight ahead"
 
@@ -39,7 +45,7 @@ class Current:
 
 
 def pose_rates(
-    sheet: Sheet, u: sp.Expr, v: sp.Expr, r: sp.Symbol, psi: sp.Symbol, x0: sp.Symbol, y0: sp.Symbol
+    sheet: Sheet, u: sp.Expr, v: sp.Expr, r: sp.Expr, psi: sp.Symbol, x0: sp.Symbol, y0: sp.Symbol
 ) -> Current:
     """Give the rates of psi, x0, y0 for velocities u, v through the water; return the current."""
     north = sheet.parameter("current_north", 0.0, "m/s", "current towards north", "none assumed", scale=0.1)
@@ -128,6 +134,12 @@ def normal_force(
     return RudderForce(sheet.bind(f"F_N{suffix}", normal, source, "N"), sine, cosine)
 
 
+def root_of_positive_part(z: sp.Symbol, z_root: sp.Symbol, U_0: sp.Symbol) -> sp.Expr:
+    """Return the smooth root of the positive part of z [m^2/s^2], with z_root = sqrt(z^2 + U_0^4)."""
+    # where z is negative its sum with the root loses all digits; their product with the difference is U_0^4
+    return sp.Piecewise((sp.sqrt((z + z_root) / 2), z >= 0), (U_0**2 / sp.sqrt(2 * (z_root - z)), True))
+
+
 def _inflow(sheet: Sheet, flow: RudderFlow, rudder: RudderCoefficients, suffix: str) -> tuple[sp.Symbol, sp.Symbol]:
     def bind(name: str, expression: sp.Expr, source: str, unit: str = "1") -> sp.Symbol:
         return sheet.bind(f"{name}{suffix}", expression, source, unit)
@@ -137,9 +149,7 @@ def _inflow(sheet: Sheet, flow: RudderFlow, rudder: RudderCoefficients, suffix: 
     slipstream = flow.u_P**2 + 8 / sp.pi * flow.thrust / (flow.rho * flow.D_P**2)
     z = bind("z", slipstream, "square of the slipstream", "m^2/s^2")
     z_root = bind("z_root", sp.sqrt(z**2 + flow.U_0**4), EXTENSION, "m^2/s^2")
-    # where z is negative its sum with the root loses all digits; their product with the difference is U_0^4
-    far_aft = sp.Piecewise((sp.sqrt((z + z_root) / 2), z >= 0), (flow.U_0**2 / sp.sqrt(2 * (z_root - z)), True))
-    u_inf = bind("u_inf", far_aft, "slipstream far aft, positive part of z", "m/s")
+    u_inf = bind("u_inf", root_of_positive_part(z, z_root, flow.U_0), "slipstream far aft, positive part of z", "m/s")
     backwash = sp.Piecewise((sp.Integer(0), flow.n >= 0), (rudder.kappa_astern * flow.n_D, True))
     inside = rudder.epsilon * (flow.u_P + rudder.kappa * (u_inf - flow.u_P)) + backwash
     u_slip = bind("u_slip", inside, f"{YASUKAWA}, u_R inside the slipstream; astern {KITAGAWA}", "m/s")

@@ -42,6 +42,7 @@ MODELS: dict[str, Callable[[], "Model"]] = {
     "nomoto2": lambda: models.nomoto2(),
     "abkowitz": lambda: models.abkowitz(),
     "mmg": lambda: models.mmg(),
+    "son_nomoto": lambda: models.son_nomoto(),
     "heave_pitch": lambda: models.heave_pitch(),
     "heave_pitch_zoh": lambda: models.heave_pitch_zoh(),
     "heave_pitch_strip": lambda: models.heave_pitch_strip(),
