@@ -134,12 +134,6 @@ def normal_force(
     return RudderForce(sheet.bind(f"F_N{suffix}", normal, source, "N"), sine, cosine)
 
 
-def root_of_positive_part(z: sp.Symbol, z_root: sp.Symbol, U_0: sp.Symbol) -> sp.Expr:
-    """Return the smooth root of the positive part of z [m^2/s^2], with z_root = sqrt(z^2 + U_0^4)."""
-    # where z is negative its sum with the root loses all digits; their product with the difference is U_0^4
-    return sp.Piecewise((sp.sqrt((z + z_root) / 2), z >= 0), (U_0**2 / sp.sqrt(2 * (z_root - z)), True))
-
-
 def _inflow(sheet: Sheet, flow: RudderFlow, rudder: RudderCoefficients, suffix: str) -> tuple[sp.Symbol, sp.Symbol]:
     def bind(name: str, expression: sp.Expr, source: str, unit: str = "1") -> sp.Symbol:
         return sheet.bind(f"{name}{suffix}", expression, source, unit)
@@ -149,7 +143,9 @@ def _inflow(sheet: Sheet, flow: RudderFlow, rudder: RudderCoefficients, suffix: 
     slipstream = flow.u_P**2 + 8 / sp.pi * flow.thrust / (flow.rho * flow.D_P**2)
     z = bind("z", slipstream, "square of the slipstream", "m^2/s^2")
     z_root = bind("z_root", sp.sqrt(z**2 + flow.U_0**4), EXTENSION, "m^2/s^2")
-    u_inf = bind("u_inf", root_of_positive_part(z, z_root, flow.U_0), "slipstream far aft, positive part of z", "m/s")
+    # where z is negative its sum with the root loses all digits; their product with the difference is U_0^4
+    far_aft = sp.Piecewise((sp.sqrt((z + z_root) / 2), z >= 0), (flow.U_0**2 / sp.sqrt(2 * (z_root - z)), True))
+    u_inf = bind("u_inf", far_aft, "slipstream far aft, positive part of z", "m/s")
     backwash = sp.Piecewise((sp.Integer(0), flow.n >= 0), (rudder.kappa_astern * flow.n_D, True))
     inside = rudder.epsilon * (flow.u_P + rudder.kappa * (u_inf - flow.u_P)) + backwash
     u_slip = bind("u_slip", inside, f"{YASUKAWA}, u_R inside the slipstream; astern {KITAGAWA}", "m/s")

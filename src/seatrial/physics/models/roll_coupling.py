@@ -101,9 +101,11 @@ def wind_on_rolling_ship(
 def coupled_accelerations(sheet: Sheet, motion: ShipMotion, inertia: ShipInertia, forces: ShipForces) -> None:
     """Write the rates of u, v, p and r; forces include the centripetal terms. Roll and yaw are eliminated from sway."""
     i = inertia
-    reduced = i.M_v - i.M_vp * i.M_pv / i.M_p - i.M_vr * i.M_rv / i.M_r
+    roll_share = sheet.bind("c_vp", i.M_vp / i.M_p, "sway inertia from roll, over that of roll", "1/m")
+    yaw_share = sheet.bind("c_vr", i.M_vr / i.M_r, "sway inertia from yaw, over that of yaw", "1/m")
+    reduced = i.M_v - roll_share * i.M_pv - yaw_share * i.M_rv
     M_e = sheet.bind("M_e", reduced, "sway mass with roll and yaw eliminated", "kg")
-    side = (forces.Y - i.M_vp / i.M_p * forces.K - i.M_vr / i.M_r * forces.N) / M_e
+    side = (forces.Y - roll_share * forces.K - yaw_share * forces.N) / M_e
     a_v = sheet.bind("a_v", side, f"{RIGID_BODY}, inertia matrix inverted", "m/s^2")
     sheet.rate(motion.u, forces.X / i.M_u, RIGID_BODY)
     sheet.rate(motion.v, a_v, RIGID_BODY)

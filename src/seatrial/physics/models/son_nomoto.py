@@ -15,7 +15,7 @@ import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
 from seatrial.physics.models.abkowitz import taylor_series
-from seatrial.physics.models.forces import EXTENSION, root_of_positive_part
+from seatrial.physics.models.forces import EXTENSION
 from seatrial.physics.models.roll_coupling import (
     ROLL_TERMS,
     SON_NOMOTO,
@@ -61,13 +61,15 @@ def _flow(sheet: Sheet, motion: ShipMotion) -> _Flow:
     U_0 = sheet.parameter("U_0", 1e-3, "m/s", "speed below which denominators are rounded off", EXTENSION)
     U = sheet.bind("U", sp.sqrt(motion.u**2 + motion.v**2 + U_0**2), f"{SON_NOMOTO}, speed U", "m/s")
     q = sheet.bind("q", rho / 2 * L**2, f"{SON_NOMOTO}, dimensions of forces", "kg/m")
+    slowness = sheet.bind("s_U", 1 / U, "slowness 1/U", "s/m")
+    lengths = sheet.bind("L_U", L * slowness, "time in which a length is travelled, L/U", "s")
     return _Flow(
         L, rho, U_0, U, q,
         q_U=sheet.bind("q_U", q * U**2, f"{SON_NOMOTO}, dimensions of forces", "N"),
-        u_p=sheet.bind("u_p", motion.u / U, "u'"),
-        v_p=sheet.bind("v_p", motion.v / U, "v'"),
-        r_p=sheet.bind("r_p", L * motion.r / U, "r'"),
-        p_p=sheet.bind("p_p", L * motion.p / U, "p'"),
+        u_p=sheet.bind("u_p", motion.u * slowness, "u'"),
+        v_p=sheet.bind("v_p", motion.v * slowness, "v'"),
+        r_p=sheet.bind("r_p", motion.r * lengths, "r'"),
+        p_p=sheet.bind("p_p", motion.p * lengths, "p'"),
     )  # fmt: skip
 
 
@@ -124,8 +126,8 @@ def _normal_force(sheet: Sheet, flow: _Flow, propeller: _Propeller, sine: sp.Sym
     v_R = sheet.bind("v_R", flow.U * side, f"{SON_NOMOTO}, v_R'", "m/s")
     slipstream = propeller.u_P**2 + 8 / sp.pi * kappa * propeller.head
     z = sheet.bind("z", slipstream, f"{SON_NOMOTO}, u_R, square of the slipstream", "m^2/s^2")
-    z_root = sheet.bind("z_root", sp.sqrt(z**2 + flow.U_0**4), EXTENSION, "m^2/s^2")
-    u_R = sheet.bind("u_R", epsilon * root_of_positive_part(z, z_root, flow.U_0), f"{SON_NOMOTO}, u_R'", "m/s")
+    ahead = sp.Piecewise((z, z > 0), (sp.Integer(0), True))
+    u_R = sheet.bind("u_R", epsilon * sp.sqrt(ahead + flow.U_0**2), f"{SON_NOMOTO}, u_R'", "m/s")
     U_R = sheet.bind("U_R", sp.sqrt(u_R**2 + v_R**2), f"{SON_NOMOTO}, U_R'", "m/s")
     normal = -flow.rho / 2 * A_R * f_alpha * U_R * (u_R * sine + v_R * cosine)
     return sheet.bind("F_N", normal, f"{SON_NOMOTO}, F_N: U_R sin(alpha_R) = u_R sin(delta) + v_R cos(delta)", "N")
