@@ -1,13 +1,13 @@
 """Names of this package, imported when first used."""
 
-from seatrial.physics.models.abkowitz import abkowitz as abkowitz
+from seatrial.physics.models.abkowitz import abkowitz as abkowitz, abkowitz_roll as abkowitz_roll
 from seatrial.physics.models.registry import ModelSummary as ModelSummary, model_summaries as model_summaries
 from seatrial.physics.models.heave_pitch import heave_pitch as heave_pitch, heave_pitch_strip as heave_pitch_strip
 from seatrial.physics.models.heave_pitch import heave_pitch_zoh as heave_pitch_zoh
 from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS as HEAVE_PITCH_COEFFICIENTS
 from seatrial.physics.models.published import HEAVE_PITCH_STIFFNESSES as HEAVE_PITCH_STIFFNESSES
 from seatrial.physics.models.published import physical_start_values as physical_start_values
-from seatrial.physics.models.mmg import mmg as mmg
+from seatrial.physics.models.mmg import mmg as mmg, mmg_roll as mmg_roll
 from seatrial.physics.models.nomoto import nomoto as nomoto, nomoto2 as nomoto2
 from seatrial.physics.models.published import ParameterSet as ParameterSet
 from seatrial.physics.models.published import PARAMETER_SETS as PARAMETER_SETS, parameter_set as parameter_set

@@ -77,7 +77,18 @@ def candidate_terms(model: Model) -> tuple[str, ...]:
 PHYSICAL_SIGNS: Mapping[str, Mapping[str, int]] = MappingProxyType(
     {
         "mmg": {"m_x_prime": 1, "m_y_prime": 1, "J_z_prime": 1, "R_0": 1, "Y_v": -1, "N_r": -1},
+        "mmg_roll": {"m_x_prime": 1, "m_y_prime": 1, "J_z_prime": 1, "R_0": 1, "Y_v": -1, "N_r": -1, "GM": 1, "b_1": 1},
         "abkowitz": {"X_udot": -1, "Y_vdot": -1, "N_rdot": -1, "Y_v": -1, "N_r": -1},
+        "abkowitz_roll": {
+            "X_udot": -1,
+            "Y_vdot": -1,
+            "N_rdot": -1,
+            "K_pdot": -1,
+            "Y_v": -1,
+            "N_r": -1,
+            "K_p": -1,
+            "GM": 1,
+        },
         "son_nomoto": {
             "m_x_prime": 1,
             "m_y_prime": 1,

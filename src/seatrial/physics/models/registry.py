@@ -42,6 +42,8 @@ MODELS: dict[str, Callable[[], "Model"]] = {
     "nomoto2": lambda: models.nomoto2(),
     "abkowitz": lambda: models.abkowitz(),
     "mmg": lambda: models.mmg(),
+    "abkowitz_roll": lambda: models.abkowitz_roll(),
+    "mmg_roll": lambda: models.mmg_roll(),
     "son_nomoto": lambda: models.son_nomoto(),
     "heave_pitch": lambda: models.heave_pitch(),
     "heave_pitch_zoh": lambda: models.heave_pitch_zoh(),

@@ -75,10 +75,10 @@ def rolling_motion(sheet: Sheet) -> tuple[ShipMotion, Current]:
     return ShipMotion(u, v, r, p, psi, phi, heel), current
 
 
-def roll_moment(sheet: Sheet, motion: ShipMotion, M_p: sp.Symbol, m: sp.Symbol, dynamic: sp.Expr) -> sp.Symbol:
-    """Return restoring, damping at rest, fins and waves [N m]; dynamic: rho/2 L^3 U^2 [N m]."""
+def roll_moment(sheet: Sheet, motion: ShipMotion, M_p: sp.Symbol, m: sp.Symbol, unit: sp.Expr) -> sp.Symbol:
+    """Return restoring, damping at rest, fins and waves [N m]; unit: what makes a moment dimensionless [N m]."""
     GM = sheet.parameter("GM", unit="m", meaning="metacentric height", free=True)
-    b_1 = sheet.parameter("b_1", 0.0, "1/s", "linear damping at rest, per unit of inertia", ITTC, lower=0.0, scale=0.01)
+    b_1 = sheet.parameter("b_1", 0.0, "1/s", "linear damping at rest, per unit of inertia", ITTC, scale=0.01)
     b_2 = sheet.parameter("b_2", 0.0, "1/rad", "quadratic damping, per unit of inertia", ITTC, scale=0.1)
     r_w = sheet.parameter("r_w", 1.0, "1", "effective share of the wave slope", WAVES)
     K_a = sheet.parameter("K_alpha_f", 0.0, "1", "roll moment from alpha_f", EXTENSION, scale=1e-4, latex=r"K'_\alpha")
@@ -86,7 +86,7 @@ def roll_moment(sheet: Sheet, motion: ShipMotion, M_p: sp.Symbol, m: sp.Symbol, 
     stiffness = sheet.bind("c_phi", m * sp.Float(GRAVITY) * GM, f"{SON_NOMOTO}, W GM", "N m/rad")
     righting = stiffness * (r_w * alpha_w - motion.heel)
     damping = M_p * (b_1 + b_2 * sp.Abs(motion.p)) * motion.p
-    return sheet.bind("K_S", righting - damping + dynamic * K_a * alpha_f, f"{SON_NOMOTO}; {ITTC}; {FINS}", "N m")
+    return sheet.bind("K_S", righting - damping + unit * K_a * alpha_f, f"{SON_NOMOTO}; {ITTC}; {FINS}", "N m")
 
 
 def wind_on_rolling_ship(
