@@ -72,15 +72,24 @@ def taylor_series(
 
 @dataclass(frozen=True)
 class _Expansion:
-    """What both models share: length, mass and x_G, the prime system, variables of the series, added masses."""
+    """What both models share: length, mass and yaw inertia, the prime system, variables of the series, added masses."""
 
     L: sp.Symbol
     m: sp.Symbol
     x_G: sp.Symbol
+    I_z: sp.Symbol
+    rho: sp.Symbol
     U: sp.Symbol
     q: sp.Symbol
-    unit_mass: sp.Symbol
     variables: dict[str, sp.Symbol]
+    added: dict[str, sp.Symbol]
+
+
+@dataclass(frozen=True)
+class _Inertia:
+    """rho/2 L^3 and the elements of the inertia matrix."""
+
+    unit: sp.Symbol
     M_u: sp.Expr
     M_vv: sp.Symbol
     M_vr: sp.Symbol
@@ -98,10 +107,10 @@ def _expansion(sheet: Sheet, u: sp.Symbol, v: sp.Symbol, r: sp.Symbol) -> _Expan
     U_n = sheet.parameter("U_n", unit="m/s", meaning="nominal speed about which is expanded", latex="U_n")
     prime = sheet.parameter("prime", 1.0, meaning="1: instantaneous speed in the prime system, 0: nominal speed")
     delta_0 = sheet.parameter("delta_0", 0.0, "rad", "added to the recorded rudder angle", scale=0.02)
-    X_udot, Y_vdot, Y_rdot, N_vdot, N_rdot = (
-        sheet.parameter(n, 0.0, latex=f"{n[0]}'_{{\\dot {n[2]}}}", meaning="added mass, negative", scale=0.01)
+    added = {
+        n: sheet.parameter(n, 0.0, latex=f"{n[0]}'_{{\\dot {n[2]}}}", meaning="added mass, negative", scale=0.01)
         for n in ("X_udot", "Y_vdot", "Y_rdot", "N_vdot", "N_rdot")
-    )
+    }
     # 1e-12 m^2/s^2 keeps the root smooth at rest
     U = sheet.bind("U", sp.sqrt(prime * (u**2 + v**2) + (1 - prime) * U_n**2 + sp.Float(1e-12)), SNAME, "m/s")
     variables = {
@@ -111,14 +120,18 @@ def _expansion(sheet: Sheet, u: sp.Symbol, v: sp.Symbol, r: sp.Symbol) -> _Expan
         "d": sheet.bind("delta_R", delta + delta_0, "rudder angle with its zero", "rad"),
     }
     q = sheet.bind("q", rho / 2 * L**2 * U**2, SNAME, "N")
-    unit = sheet.bind("m_L", rho / 2 * L**3, SNAME, "kg")
-    source = "Abkowitz 1964, inertia matrix"
-    return _Expansion(
-        L, m, x_G, U, q, unit, variables, m - X_udot * unit,
-        M_vv=sheet.bind("M_vv", m - Y_vdot * unit, source, "kg"),
-        M_vr=sheet.bind("M_vr", m * x_G - Y_rdot * unit * L, source, "kg m"),
-        M_rv=sheet.bind("M_rv", m * x_G - N_vdot * unit * L, source, "kg m"),
-        M_rr=sheet.bind("M_rr", I_z + m * x_G**2 - N_rdot * unit * L**2, source, "kg m^2"),
+    return _Expansion(L, m, x_G, I_z, rho, U, q, variables, added)
+
+
+def _inertia(sheet: Sheet, e: _Expansion) -> _Inertia:
+    unit = sheet.bind("m_L", e.rho / 2 * e.L**3, SNAME, "kg")
+    added, m, source = e.added, e.m, "Abkowitz 1964, inertia matrix"
+    return _Inertia(
+        unit, m - added["X_udot"] * unit,
+        M_vv=sheet.bind("M_vv", m - added["Y_vdot"] * unit, source, "kg"),
+        M_vr=sheet.bind("M_vr", m * e.x_G - added["Y_rdot"] * unit * e.L, source, "kg m"),
+        M_rv=sheet.bind("M_rv", m * e.x_G - added["N_vdot"] * unit * e.L, source, "kg m"),
+        M_rr=sheet.bind("M_rr", e.I_z + m * e.x_G**2 - added["N_rdot"] * unit * e.L**2, source, "kg m^2"),
     )  # fmt: skip
 
 
@@ -130,11 +143,12 @@ def _full_model() -> Model:
     X = sheet.bind("X_sum", e.q * taylor_series(sheet, "X", X_TERMS, e.variables), TERMS_SOURCE, "N")
     Y = sheet.bind("Y_sum", e.q * taylor_series(sheet, "Y", Y_TERMS, e.variables), TERMS_SOURCE, "N")
     N = sheet.bind("N_sum", e.q * e.L * taylor_series(sheet, "N", N_TERMS, e.variables), TERMS_SOURCE, "N m")
-    D = sheet.bind("D_M", e.M_vv * e.M_rr - e.M_vr * e.M_rv, "determinant of the inertia matrix", "kg^2 m^2")
+    i = _inertia(sheet, e)
+    D = sheet.bind("D_M", i.M_vv * i.M_rr - i.M_vr * i.M_rv, "determinant of the inertia matrix", "kg^2 m^2")
     X_m, Y_m, N_m = _with_centripetal(sheet, e, (u, v, r), (X, Y, N))
-    sheet.rate(u, X_m / e.M_u, "Abkowitz 1964, rigid body")
-    sheet.rate(v, (Y_m * e.M_rr - N_m * e.M_vr) / D, "inertia matrix inverted")
-    sheet.rate(r, (N_m * e.M_vv - Y_m * e.M_rv) / D, "inertia matrix inverted")
+    sheet.rate(u, X_m / i.M_u, "Abkowitz 1964, rigid body")
+    sheet.rate(v, (Y_m * i.M_rr - N_m * i.M_vr) / D, "inertia matrix inverted")
+    sheet.rate(r, (N_m * i.M_vv - Y_m * i.M_rv) / D, "inertia matrix inverted")
     pose_rates(sheet, u, v, r, psi, x0, y0)
     return sheet.model()
 
@@ -192,14 +206,15 @@ def _full_rolling_model() -> Model:
         sheet.parameter(n, 0.0, latex=f"{n[0]}'_{{\\dot {n[2]}}}", meaning="added mass", scale=scale)
         for n, scale in (("Y_pdot", 1e-3), ("K_vdot", 1e-3), ("K_pdot", 1e-5))
     )
-    arm = e.unit_mass * e.L
+    i = _inertia(sheet, e)
+    arm = i.unit * e.L
     M_p = sheet.bind("M_p", I_x - K_pdot * arm * e.L, "Abkowitz 1964, inertia matrix", "kg m^2")
     M_vp = sheet.bind("M_vp", -Y_pdot * arm, "Abkowitz 1964, inertia matrix", "kg m")
     M_pv = sheet.bind("M_pv", -K_vdot * arm, "Abkowitz 1964, inertia matrix", "kg m")
-    M_u = sheet.bind("M_u", e.M_u, "Abkowitz 1964, inertia matrix", "kg")
+    M_u = sheet.bind("M_u", i.M_u, "Abkowitz 1964, inertia matrix", "kg")
     static = roll_moment(sheet, ship, M_p, e.m, unit["K"])
     X_m, Y_m, N_m = _with_centripetal(sheet, e, (ship.u, ship.v, ship.r), (X, Y, N))
-    inertia = ShipInertia(M_u, e.M_vv, M_p, e.M_rr, M_vp, M_pv, e.M_vr, e.M_rv)
+    inertia = ShipInertia(M_u, i.M_vv, M_p, i.M_rr, M_vp, M_pv, i.M_vr, i.M_rv)
     coupled_accelerations(sheet, ship, inertia, ShipForces(X_m, Y_m, K + static, N_m))
     return sheet.model()
 

@@ -205,12 +205,9 @@ def _rudder(
 
 
 @dataclass(frozen=True)
-class _Balance:
-    """Forces with the centripetal terms, which a balance feels that holds the ship in steady motion; masses; m."""
+class _Masses:
+    """Masses and inertia with added ones, M_c = m x_G; m, m_y' and rho/2 L^2 d."""
 
-    X_m: sp.Symbol
-    Y_m: sp.Symbol
-    N_m: sp.Symbol
     M_u: sp.Symbol
     M_v: sp.Symbol
     M_c: sp.Symbol
@@ -220,32 +217,42 @@ class _Balance:
     unit: sp.Symbol
 
 
-def _balance(sheet: Sheet, motion: _Motion, X: sp.Symbol, Y: sp.Symbol, N: sp.Symbol) -> _Balance:
+_EQUATIONS = f"{YASUKAWA}, equations of motion"
+
+
+def _masses(sheet: Sheet, motion: _Motion) -> _Masses:
     m = sheet.parameter("m", unit="kg", meaning="mass")
     x_G = sheet.parameter("x_G", unit="m", meaning="centre of gravity forward of midship")
     I_z = sheet.parameter("I_z", unit="kg m^2", meaning="yaw inertia about the centre of gravity")
     m_x = sheet.parameter("m_x_prime", meaning="surge added mass over rho/2 L^2 d", latex="m'_x")
     m_y = sheet.parameter("m_y_prime", meaning="sway added mass over rho/2 L^2 d", latex="m'_y")
     J_z = sheet.parameter("J_z_prime", meaning="yaw added inertia over rho/2 L^4 d", latex="J'_z")
-    equation = f"{YASUKAWA}, equations of motion"
     unit = sheet.bind("m_L", motion.q * motion.L, "rho/2 L^2 d", "kg")
-    M_u = sheet.bind("M_u", m + m_x * unit, equation, "kg")
-    M_v = sheet.bind("M_v", m + m_y * unit, equation, "kg")
-    M_c = sheet.bind("M_c", m * x_G, equation, "kg m")
-    M_r = sheet.bind("M_r", I_z + M_c * x_G + J_z * unit * motion.L**2, equation, "kg m^2")
-    u_r = sheet.bind("u_r", motion.u * motion.r, equation, "m/s^2")
-    X_m = sheet.bind("X_m", X + M_v * motion.v * motion.r + M_c * motion.r**2, equation, "N")
-    Y_m = sheet.bind("Y_m", Y - M_u * u_r, equation, "N")
-    N_m = sheet.bind("N_m", N - M_c * u_r, equation, "N m")
-    return _Balance(X_m, Y_m, N_m, M_u, M_v, M_c, M_r, m, m_y, unit)
+    M_u = sheet.bind("M_u", m + m_x * unit, _EQUATIONS, "kg")
+    M_v = sheet.bind("M_v", m + m_y * unit, _EQUATIONS, "kg")
+    M_c = sheet.bind("M_c", m * x_G, _EQUATIONS, "kg m")
+    M_r = sheet.bind("M_r", I_z + M_c * x_G + J_z * unit * motion.L**2, _EQUATIONS, "kg m^2")
+    return _Masses(M_u, M_v, M_c, M_r, m, m_y, unit)
 
 
-def _accelerations(sheet: Sheet, motion: _Motion, b: _Balance) -> None:
-    equation = f"{YASUKAWA}, equations of motion"
-    D = sheet.bind("D_M", b.M_v * b.M_r - b.M_c**2, "determinant of the inertia matrix", "kg^2 m^2")
-    sheet.rate(motion.u, b.X_m / b.M_u, equation)
-    sheet.rate(motion.v, (b.Y_m * b.M_r - b.N_m * b.M_c) / D, f"{equation}, inertia matrix inverted")
-    sheet.rate(motion.r, (b.N_m * b.M_v - b.Y_m * b.M_c) / D, f"{equation}, inertia matrix inverted")
+def _with_centripetal(
+    sheet: Sheet, motion: _Motion, masses: _Masses, X: sp.Symbol, Y: sp.Symbol, N: sp.Symbol
+) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+    """Return X_m, Y_m, N_m: what a balance feels that holds the ship in steady motion."""
+    u_r = sheet.bind("u_r", motion.u * motion.r, _EQUATIONS, "m/s^2")
+    X_m = sheet.bind("X_m", X + masses.M_v * motion.v * motion.r + masses.M_c * motion.r**2, _EQUATIONS, "N")
+    Y_m = sheet.bind("Y_m", Y - masses.M_u * u_r, _EQUATIONS, "N")
+    return X_m, Y_m, sheet.bind("N_m", N - masses.M_c * u_r, _EQUATIONS, "N m")
+
+
+def _accelerations(sheet: Sheet, motion: _Motion, X: sp.Symbol, Y: sp.Symbol, N: sp.Symbol) -> None:
+    masses = _masses(sheet, motion)
+    M_v, M_c, M_r = masses.M_v, masses.M_c, masses.M_r
+    D = sheet.bind("D_M", M_v * M_r - M_c**2, "determinant of the inertia matrix", "kg^2 m^2")
+    X_m, Y_m, N_m = _with_centripetal(sheet, motion, masses, X, Y, N)
+    sheet.rate(motion.u, X_m / masses.M_u, _EQUATIONS)
+    sheet.rate(motion.v, (Y_m * M_r - N_m * M_c) / D, f"{_EQUATIONS}, inertia matrix inverted")
+    sheet.rate(motion.r, (N_m * M_v - Y_m * M_c) / D, f"{_EQUATIONS}, inertia matrix inverted")
 
 
 @cache
@@ -269,7 +276,7 @@ def mmg() -> Model:
     X = sheet.bind("X_sum", X_H + by.X_P + X_R + wind.X, f"{YASUKAWA}, X of the equations of motion", "N")
     Y = sheet.bind("Y_sum", Y_H + by.Y_P + Y_R + wind.Y, f"{YASUKAWA}, Y of the equations of motion", "N")
     N = sheet.bind("N_sum", N_H + by.N_P + N_R + wind.N, f"{YASUKAWA}, N_m of the equations of motion", "N m")
-    _accelerations(sheet, motion, _balance(sheet, motion, X, Y, N))
+    _accelerations(sheet, motion, X, Y, N)
     return sheet.model()
 
 
@@ -296,14 +303,14 @@ def _heeled(sheet: Sheet, motion: _Motion, ship: ShipMotion) -> tuple[sp.Symbol,
     )
 
 
-def _roll_inertia(sheet: Sheet, motion: _Motion, b: _Balance) -> ShipInertia:
+def _roll_inertia(sheet: Sheet, motion: _Motion, masses: _Masses) -> ShipInertia:
     I_x = sheet.parameter("I_x", unit="kg m^2", meaning="roll inertia about the centre of gravity")
     J_x = sheet.parameter("J_x_prime", 0.0, meaning="roll added inertia over rho/2 L^4 d", scale=1e-5, latex="J'_x")
     l_y = sheet.parameter("l_y_prime", 0.0, meaning="depth of the sway added mass below G over L", scale=0.01,
                           latex="l'_y")  # fmt: skip
-    M_p = sheet.bind("M_p", I_x + J_x * b.unit * motion.L**2, f"{ROLLING}, equations of motion", "kg m^2")
-    M_vp = sheet.bind("M_vp", -b.m_y * l_y * b.unit * motion.L, f"{ROLLING}, equations of motion", "kg m")
-    return ShipInertia(b.M_u, b.M_v, M_p, b.M_r, M_vp, M_vp, b.M_c, b.M_c)
+    M_p = sheet.bind("M_p", I_x + J_x * masses.unit * motion.L**2, f"{ROLLING}, equations of motion", "kg m^2")
+    M_vp = sheet.bind("M_vp", -masses.m_y * l_y * masses.unit * motion.L, f"{ROLLING}, equations of motion", "kg m")
+    return ShipInertia(masses.M_u, masses.M_v, M_p, masses.M_r, M_vp, M_vp, masses.M_c, masses.M_c)
 
 
 @cache
@@ -325,17 +332,18 @@ def mmg_roll() -> Model:
     X = sheet.bind("X_sum", X_H + X_F + by.X_P + X_R + wind.X, f"{ROLLING}, X of the equations of motion", "N")
     Y = sheet.bind("Y_sum", Y_H + Y_F + by.Y_P + Y_R + wind.Y, f"{ROLLING}, Y of the equations of motion", "N")
     N = sheet.bind("N_sum", N_H + N_F + by.N_P + N_R + wind.N, f"{ROLLING}, N of the equations of motion", "N m")
-    balance = _balance(sheet, motion, X, Y, N)
-    inertia = _roll_inertia(sheet, motion, balance)
+    masses = _masses(sheet, motion)
+    inertia = _roll_inertia(sheet, motion, masses)
+    X_m, Y_m, N_m = _with_centripetal(sheet, motion, masses, X, Y, N)
     z_H, z_R = (
         sheet.parameter(f"{name}_prime", 0.0, meaning=f"depth of the {what} below G over L", free=is_free, scale=0.01,
                         latex=f"z'_{name[2]}")
         for name, what, is_free in (("z_H", "hull's side force", True), ("z_R", "rudder's side force", False))
     )  # fmt: skip
     unit = motion.q * motion.L * motion.U**2
-    static = roll_moment(sheet, ship, inertia.M_p, balance.m, unit)
+    static = roll_moment(sheet, ship, inertia.M_p, masses.m, unit)
     levers = motion.L * (z_H * (Y_H + Y_F) + z_R * Y_R)
     K = sheet.bind("K_sum", static - levers + wind.K, f"{ROLLING}, side force times its lever", "N m")
-    coupled_accelerations(sheet, ship, inertia, ShipForces(balance.X_m, balance.Y_m, K, balance.N_m))
+    coupled_accelerations(sheet, ship, inertia, ShipForces(X_m, Y_m, K, N_m))
     model = sheet.model()
     return model.with_parameters(model.parameters.freed("b_1", "b_2"))
