@@ -43,8 +43,8 @@ def measure_label(name: str) -> tuple[str, str]:
         return _MEASURES[name]
     numbered = re.fullmatch(r"(overshoot|heel)_(\d+)_deg", name)
     if numbered:
-        noun = {"heel": "largest heel"}.get(numbered[1], numbered[1])
-        return f"{ordinal(int(numbered[2]))} {noun}", "deg"
+        count = ordinal(int(numbered[2]))
+        return f"largest heel, {count} turn" if numbered[1] == "heel" else f"{count} overshoot", "deg"
     for ending, unit in _UNIT_ENDINGS:
         if name.endswith(ending):
             return name.removesuffix(ending).replace("_", " "), unit
