@@ -4,7 +4,7 @@
 
 Rivals: ARX and NARX models of all outputs, which see the wind off the bow. The fit begins at zero and GM 1 m and has
 the equations of the truth, so that its errors are those of coefficients, of initial states and of what the sensors add.
---write keeps the records of the first draw as tables, a folder each for training, inside and outside, for other methods.
+--write keeps the records of the first draw as tables, in folders training, inside and outside, for other methods.
 """
 
 import argparse
