@@ -11,8 +11,10 @@ keeps the records of the first draw as CSV files, those of examples/thrusters. -
 
 import argparse
 import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 from measure import Line, at_most
@@ -38,11 +40,11 @@ SAMPLE = 40
 """Draws that `make bench` runs."""
 
 
-def bound(truth: Model, length: float, runs: list[Record]) -> Array:
+def bound(truth: Model, length: float, runs: Sequence[Record], noise: Mapping[str, float] = NOISE) -> Array:
     """Return the Cramer-Rao bound of each free coefficient at the truth: standard deviations, (free,)."""
     sessions = Runs.one_session_each(runs, length)
     problem = output_error_problem(truth, sessions, np.inf, SETTINGS)
-    problem = replace(problem, noise=np.array([NOISE[c] for c in problem.data.outputs]))
+    problem = replace(problem, noise=np.array([noise[c] for c in problem.data.outputs]))
     information = problem.normal(problem.start(), problem.measured_initial_states()).without_local()[1]
     return np.sqrt(np.diag(np.linalg.inv(information)))[: len(truth.parameters.free_names)]
 
@@ -70,6 +72,33 @@ class Draws:
     is_held: list[NDArray[np.bool_]]
     refusals: list[str]
 
+    @classmethod
+    def of(cls, truth: Model, spread: Array) -> Self:
+        """Return none yet, of the free coefficients of a truth and their bounds (free,)."""
+        names = truth.parameters.free_names
+        return cls(names, np.array([truth.parameters[n].value for n in names]), spread, [], [], [])
+
+    def add(
+        self, seeds: Iterable[int], recorded: Callable[[np.random.Generator], Sequence[Record]], fitted: Model,
+        length: float, settings: EstimateSettings,
+    ) -> None:  # fmt: skip
+        """Estimate what is recorded with each seed by a model that begins without a guess."""
+        free = len(self.names)
+        for k in seeds:
+            runs = Runs.one_session_each(list(recorded(np.random.default_rng([1, k]))), length)
+            try:
+                estimation = estimate_model(fitted, runs, settings)
+            except InputError as error:
+                self.refusals.append(f"draw {k}: {error}")
+                continue
+            missed = estimation.estimate.common_parameters[:free] - self.true
+            deviation = np.sqrt(np.diag(estimation.interval.covariance))[:free]
+            quantile = stdtrit(estimation.interval.degrees_of_freedom, 0.975)
+            self.errors.append(missed / self.spread)
+            self.is_held.append(np.abs(missed) <= quantile * deviation)
+            if len(self.errors) % LINE == 0:
+                print(self.line(), file=sys.stderr, flush=True)
+
     @property
     def ratio(self) -> Array:
         """RMSE of each coefficient over its bound."""
@@ -95,28 +124,14 @@ def estimated(
 ) -> Draws:
     """Return what estimates of so many draws missed; folder: where the records of the first draw are written."""
     model = craft.truth.with_parameters(craft.truth.parameters.only_free(fitted.parameters.free_names))
-    clean = simulated_runs(craft, np.random.default_rng(1))
-    names = model.parameters.free_names
-    true = np.array([model.parameters[n].value for n in names])
-    draws = Draws(names, true, bound(model, craft.layout.length, clean), [], [], [])
-    for k in range(count):
-        rng = np.random.default_rng([1, k])
-        records = [noisy(run, rng) for run in clean]
-        if k == 0 and folder:
-            folder.mkdir(parents=True, exist_ok=True)
-            for record in records:
-                write_table(record, folder / f"{record.name}.csv")
-        try:
-            estimation = estimate_model(fitted, Runs.one_session_each(records, craft.layout.length), settings)
-        except InputError as error:
-            draws.refusals.append(f"draw {k}: {error}")
-            continue
-        found = estimation.estimate.common_parameters[: len(names)]
-        deviation = np.sqrt(np.diag(estimation.interval.covariance))[: len(names)]
-        draws.errors.append((found - true) / draws.spread)
-        draws.is_held.append(np.abs(found - true) <= stdtrit(estimation.interval.degrees_of_freedom, 0.975) * deviation)
-        if (k + 1) % LINE == 0:
-            print(draws.line(), file=sys.stderr, flush=True)
+    clean, length = simulated_runs(craft, np.random.default_rng(1)), craft.layout.length
+    if folder:
+        folder.mkdir(parents=True, exist_ok=True)
+        rng = np.random.default_rng([1, 0])
+        for run in clean:
+            write_table(noisy(run, rng), folder / f"{run.name}.csv")
+    draws = Draws.of(model, bound(model, length, clean))
+    draws.add(range(count), lambda rng: [noisy(run, rng) for run in clean], fitted, length, settings)
     return draws
 
 

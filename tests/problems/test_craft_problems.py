@@ -10,13 +10,15 @@ from seatrial.problems import (
     centred_box,
     off_centre_box,
     scaled_values,
+    ship_in_wind,
     thruster_craft,
     waterjet_craft,
 )
 from seatrial.problems import disturbed_craft as nomoto_gusts
 
-PROBLEMS = {p.name: p for family in (nomoto_gusts, thruster_craft, waterjet_craft) for p in family.problems()}
-QUICK = ("song2025-zigzags", "nomoto-gusts-closed", "thrusters-two-fixed")
+FAMILIES = (nomoto_gusts, ship_in_wind, thruster_craft, waterjet_craft)
+PROBLEMS = {p.name: p for family in FAMILIES for p in family.problems()}
+QUICK = ("song2025-zigzags", "nomoto-gusts-closed", "thrusters-two-fixed", "s175-trials")
 """Problems whose models compile in a second or two; the other craft with thrusters differ in their layout alone."""
 
 
@@ -48,11 +50,27 @@ def test_a_draw_repeats_itself_and_its_truth_is_near_the_published_one(name: str
     assert np.allclose([at_start[name] for name in draw.unknowns], draw.start)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("name", ["song2025-zigzags", "thrusters-two-fixed"])
+@pytest.mark.parametrize("name", ["song2025-zigzags", "thrusters-two-fixed", "s175-trials"])
 def test_the_own_estimator_succeeds_under_white_noise(name: str) -> None:
     problem = PROBLEMS[name]
     answer = attempt(built_in_methods()["output-error"], problem, 1)
     assert problem.draw(1).yardstick.error(answer.values) < 1.5
+
+
+def test_a_ship_in_wind_is_judged_outside_the_distribution_of_its_training() -> None:
+    draw, again = (PROBLEMS["s175-wind"].draw(1) for _ in range(2))
+    yardstick = draw.yardstick
+    assert isinstance(yardstick, ship_in_wind.OutsideYardstick)
+    assert yardstick.narx == again.yardstick.narx  # type: ignore[union-attr]
+    assert draw.trial is not None and draw.least_squares is not None
+    train = [run.raw_record() for run in draw.trial.runs]
+    seen = {name: max(float(np.abs(r[name]).max()) for r in train) for name in ("delta", "wind_speed", "u")}
+    beyond = yardstick.windows.records
+    assert all(max(float(np.abs(r[name]).max()) for r in beyond) > 1.2 * seen[name] for name in ("delta", "wind_speed"))
+    start = np.asarray(draw.start)
+    answer = attempt(built_in_methods()["output-error"], PROBLEMS["s175-wind"], 1)
+    assert yardstick.error(answer.values) < yardstick.success_limit
+    assert yardstick.error(answer.values) < 0.5 * yardstick.error(start)
 
 
 def test_every_craft_with_thrusters_is_a_problem() -> None:

@@ -20,8 +20,11 @@ LAW = MirrorLaw(frozenset(ODD), SPLIT)
 
 def complete(name: str) -> Model:
     """A built-in model with a value for every parameter."""
-    if name == "mmg":
-        return parameter_set("kvlcc2").applied_to(model_named(name))
+    if name in ("mmg", "mmg_roll"):
+        rolling = {"GM": 0.1, "I_x": 600.0} if name == "mmg_roll" else {}
+        return parameter_set("kvlcc2").applied_to(model_named(name).with_values(rolling))
+    if name == "son_nomoto":
+        return parameter_set("s175").applied_to(model_named(name))
     if name in ("heave_pitch", "heave_pitch_zoh"):
         return theoretical_coefficients(135).applied_to(model_named(name))
     model = model_named(name)

@@ -331,7 +331,7 @@ def _draw(rng: np.random.Generator, placement: Placement, *, is_closed: bool) ->
     bound, _ = limit_of(craft, _GUSTS, record)
     box = off_centre_box(truth, _HALF_WIDTH, rng)
     known = KnownCraft(
-        Ship("steering model", {"L": NOMOTO.length}), model, [record], NOMOTO.sensors, dict.fromkeys(model.states, 0.0),
+        Ship("steering model", {"L": NOMOTO.length}), model, [record], NOMOTO.sensors, [{}],
         disturbance_bound=bound,
     )  # fmt: skip
     return craft_draw(known, box, 0.5 * (box.lower + box.upper))

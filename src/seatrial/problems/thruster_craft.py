@@ -170,6 +170,6 @@ def _draw(craft: KnownThrusterCraft, rng: np.random.Generator, placement: Placem
     box = off_centre_box(truth, _HALF_WIDTH, rng)
     ship = Ship("craft with thrusters", {"L": craft.layout.length})
     settings = EstimateSettings(method=EstimateMethod.OUTPUT_ERROR)
-    known_craft = KnownCraft(ship, craft.truth, records, NOISE, dict.fromkeys(craft.truth.states, 0.0), settings)
+    known_craft = KnownCraft(ship, craft.truth, records, NOISE, [{}] * len(records), settings)
     draw = craft_draw(known_craft, box, 0.5 * (box.lower + box.upper))
     return draw if draw.trial is None else replace(draw, trial=replace(draw.trial, accept=craft.accept))

@@ -98,7 +98,7 @@ class KnownCraft:
     Attributes:
         model: the true one, its free coefficients the unknowns.
         records: with noise; noise: channel -> standard deviation, SI.
-        initial_state: state -> value at the start of every run, known to the methods.
+        initial_states: state -> value at the start of each run, known to the methods.
         disturbance_bound: bound of the standard errors (d,) where more than sensor noise limits them.
     """
 
@@ -106,7 +106,7 @@ class KnownCraft:
     model: Model
     records: Sequence[Record]
     noise: Mapping[str, float]
-    initial_state: Mapping[str, float]
+    initial_states: Sequence[Mapping[str, float]]
     settings: EstimateSettings = field(default_factory=EstimateSettings)
     disturbance_bound: Array | None = None
 
@@ -116,8 +116,8 @@ def craft_draw(craft: KnownCraft, box: Box, start: Array) -> ProblemDraw:
     names = craft.model.parameters.free_names
     truth = np.array([craft.model.parameters[name].value for name in names])
     problem = _output_error(craft)
-    states = np.tile([craft.initial_state.get(s, 0.0) for s in problem.starts], (len(craft.records), 1))
-    held = HeldInitialStates(problem, states.astype(np.float64), box.lower, box.upper)
+    states = np.array([[start.get(s, 0.0) for s in problem.starts] for start in craft.initial_states], dtype=np.float64)
+    held = HeldInitialStates(problem, states, box.lower, box.upper)
     bound = craft.disturbance_bound
     if bound is None:
         bound = standard_errors_within(held.normal(truth).hessian, box)

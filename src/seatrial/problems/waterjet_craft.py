@@ -39,5 +39,5 @@ def _draw(rng: np.random.Generator, placement: Placement) -> ProblemDraw:
     state = {name: float(clean[name][0]) for name in model.states}
     record = with_sensor_noise(clean, rng, 0)
     box = off_centre_box(truth, _HALF_WIDTH, rng)
-    craft = KnownCraft(_SHIP, model, [record], SENSOR_NOISE, state)
+    craft = KnownCraft(_SHIP, model, [record], SENSOR_NOISE, [state])
     return craft_draw(craft, box, 0.5 * (box.lower + box.upper))

@@ -24,6 +24,7 @@ _MEASURES = {
     "steady_diameter_L": ("steady turning diameter, 2 U/r", "L"),
     "steady_yaw_rate_deg_s": ("steady yaw rate", "deg/s"),
     "steady_drift_deg": ("steady drift angle", "deg"),
+    "steady_heel_deg": ("steady heel out of the turn", "deg"),
     "speed_loss": ("speed lost in the turn, share of approach speed", ""),
     "time_90_s": ("time to 90° change of heading", "s"),
     "initial_turning_time_s": ("initial turning time", "s"),
@@ -40,9 +41,10 @@ def measure_label(name: str) -> tuple[str, str]:
     """Return name and unit of a manoeuvring measure: ``overshoot_1_deg`` -> 1st overshoot, deg."""
     if name in _MEASURES:
         return _MEASURES[name]
-    overshoot = re.fullmatch(r"overshoot_(\d+)_deg", name)
-    if overshoot:
-        return f"{ordinal(int(overshoot[1]))} overshoot", "deg"
+    numbered = re.fullmatch(r"(overshoot|heel)_(\d+)_deg", name)
+    if numbered:
+        count = ordinal(int(numbered[2]))
+        return f"largest heel, {count} turn" if numbered[1] == "heel" else f"{count} overshoot", "deg"
     for ending, unit in _UNIT_ENDINGS:
         if name.endswith(ending):
             return name.removesuffix(ending).replace("_", " "), unit

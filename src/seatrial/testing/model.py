@@ -14,6 +14,7 @@ _JACOBIAN_TOLERANCE = 2e-7
 # relative steps of a difference, of which the better counts, and the magnitude (SI) below which they are absolute;
 # ours: the smaller suits strong curvature, the larger rates that are small differences of large terms
 _STEPS, _SMALLEST = (1e-6, 3e-5), 1e-2
+_FARTHEST = 100.0  # of a value that is not zero, the most that counts as its magnitude; chosen
 _MIRROR_TOLERANCE = 1e-9  # relative; ours: sums in another order
 
 
@@ -78,7 +79,8 @@ def _check_jacobian(model: Model, point: Point) -> None:
     for column, name in enumerate(names):
         gaps = []
         for relative in _STEPS:
-            step = relative * max(abs(point.vector[column]), _SMALLEST)
+            value = abs(point.vector[column])
+            step = relative * max(value, min(_SMALLEST, _FARTHEST * value) or _SMALLEST)
             up, down = (_rates_and_outputs(model, point.moved(column, s)) for s in (step, -step))
             gaps.append(np.abs(exact[:, column] - (up - down) / (2.0 * step)) / size)
         gap = np.minimum(*gaps)

@@ -16,11 +16,13 @@ from seatrial.control.loopfile.load import tuning_task
 from seatrial.control.loopfile.schema import loop_schema
 from seatrial.control.task import Effectiveness, Seaway, SimulationSettings, SlowDisturbance
 from seatrial.core.values import InputError
+from seatrial.data.folder.model_file import ModelFile, write_model
 from seatrial.physics.loops import ActuatorDrive, HullFactor, LiftingSurface, LoopSignal, Sampling, YawAcceleration
 from seatrial.physics.loops.discrete import default_sample_time
 from seatrial.physics.loops.objective import hourly_energy
 from seatrial.physics.loops.performance import calm_actuator
 from seatrial.physics.loops.structures import GYRO, SERVO, Preamplifier, fin_loop
+from seatrial.physics.models.published import container_ship, s175
 from seatrial.physics.sea.spectrum import sea_state
 
 FIN_LINES = sum(bool(line.strip()) for line in FIN.splitlines())
@@ -353,3 +355,16 @@ def test_the_loops_in_the_docs_are_tasks(repository: Path, tmp_path: Path) -> No
     fin, autopilot = (tuning_task(write_loop_file(tmp_path, block), model_file=given) for block, given in zip(
         blocks, (None, tmp_path / "model.toml"), strict=True))  # fmt: skip
     assert fin.demand is None and autopilot.demand is not None
+
+
+def test_of_a_ship_that_turns_and_rolls_the_heading_is_controlled_unless_the_file_says_otherwise(
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / "model.toml"
+    write_model(ModelFile(container_ship(), ship=s175().ship, approach={"u": 7.33, "n": 70.0 / 60.0}), path)
+    heading = tuning_task(write_loop_file(tmp_path, AUTOPILOT))
+    assert (heading.loop.output, heading.loop.actuator) == ("psi", "delta")
+    text = AUTOPILOT[: AUTOPILOT.index("[demand]")]
+    signals = 'model = "model.toml"\noutput = "phi"\nactuator = "delta"\ndisturbance = "alpha_w"'
+    roll_task = tuning_task(write_loop_file(tmp_path, text.replace('model = "model.toml"', signals)))
+    assert (roll_task.loop.output, roll_task.loop.actuator) == ("phi", "delta")

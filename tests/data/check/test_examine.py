@@ -13,6 +13,7 @@ from tests.data.conftest import LONGEST_MESSAGE
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.check import canonical_record, is_excited
 from seatrial.data.check import examine as examine_anew
+from seatrial.problems.rolling_ship import rolling_container_ship
 
 examine = cache(examine_anew)
 
@@ -189,6 +190,12 @@ def test_rudder_that_never_moves() -> None:
     finding = found(record, "no-excitation")
     assert "never moves" in finding.message and "zigzag" in finding.advice
     assert not is_excited(record) and is_excited(zigzag())
+
+
+def test_a_ship_that_rolls_out_under_way_needs_no_moving_rudder() -> None:
+    ship = rolling_container_ship()
+    decay = ship.noisy(ship.runs()[-1], np.random.default_rng(0))
+    assert "no-excitation" not in codes(decay)
 
 
 def test_dead_stuck_and_constant_channels() -> None:

@@ -12,7 +12,7 @@ from seatrial.physics.manoeuvres.imo import first_overshoot_limit, second_oversh
 from seatrial.physics.manoeuvres.measures import commands_of, thrust_measures
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
-from seatrial.physics.models.published import kvlcc2
+from seatrial.physics.models.published import container_ship, kvlcc2
 from seatrial.physics.simulate.steer import manoeuvre
 
 LENGTH = 10.0
@@ -115,6 +115,20 @@ def test_a_turning_circle_with_a_pull_out_gives_the_measures_of_both() -> None:
     for name in ("advance_L", "transfer_L", "tactical_diameter_L"):
         assert both[name] == pytest.approx(circle[name], rel=1e-3)
     assert "residual_yaw_rate_deg_s" in both and "residual_yaw_rate_deg_s" not in circle
+
+
+def test_heel_is_counted_out_of_the_turn() -> None:
+    ship, inputs = container_ship(), {"n": 100.0 / 60.0}
+    for text in ("turning-circle:15", "turning-circle:15:port"):
+        turn = manoeuvre(ship, programme(text), dt=0.5, inputs=inputs)
+        found, outward = measures(turn, 175.0), math.copysign(1.0, -float(turn["psi"][-1])) * np.degrees(turn["phi"])
+        assert found["heel_1_deg"] == pytest.approx(outward.max(), rel=0.01)
+        last_half_turn = np.abs(turn["psi"]) > abs(float(turn["psi"][-1])) - math.pi
+        assert found["steady_heel_deg"] == pytest.approx(np.mean(outward[last_half_turn]), abs=0.05)
+    zigzag = manoeuvre(ship, programme("zigzag:20/20"), dt=0.5, inputs=inputs)
+    found = measures(zigzag, 175.0)
+    assert found["heel_1_deg"] == pytest.approx(np.degrees(np.abs(zigzag["phi"]).max()), rel=0.02)
+    assert {f"heel_{k}_deg" for k in (1, 2, 3)} <= set(found)
 
 
 def test_rudder_that_never_moves_shows_nothing() -> None:

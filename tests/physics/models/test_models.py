@@ -12,12 +12,22 @@ import pytest
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
 from seatrial.physics.models import MODELS, model_named
-from seatrial.physics.models.abkowitz import TERMS
-from seatrial.physics.models.published import QI2025_SHIP, esso_osaka, kvlcc2, theoretical_coefficients
+from seatrial.physics.models.abkowitz import ROLLING_TERMS
+from seatrial.physics.models.forces import variables_of
+from seatrial.physics.models.mmg import mmg_roll
+from seatrial.physics.models.published import (
+    QI2025_SHIP,
+    container_ship,
+    esso_osaka,
+    kvlcc2,
+    kvlcc2_l7,
+    theoretical_coefficients,
+)
 
-MIRRORED = {"v", "r", "r_rest", "psi", "y0", "delta", "wind_direction"}
+MIRRORED = {"v", "r", "r_rest", "psi", "y0", "phi", "p", "delta", "alpha_w", "alpha_f", "wind_direction"}
 # parameters that change sign in the mirror; those split by side change places
-ODD = {"Y_0", "N_0", "Y_T", "N_T", "Y_dd", "N_dd", "Y_nn", "Y_nu", "N_nn", "N_nu", "delta_0", "current_east"}
+ODD = {"Y_0", "N_0", "Y_T", "N_T", "Y_dd", "N_dd", "Y_nn", "Y_nu", "N_nn", "N_nu", "delta_0", "current_east",
+       "phi_0"}  # fmt: skip
 SIDES = {"C_2_plus": "C_2_minus", "gamma_R_plus": "gamma_R_minus"}
 
 ABKOWITZ_SHIP = {"L": 7.0, "m": 3270.0, "x_G": 0.25, "I_z": 1e4, "rho": 1000.0, "U_n": 1.2}
@@ -26,10 +36,12 @@ INERTIA = {"X_udot": -0.001, "Y_vdot": -0.015, "Y_rdot": -0.001, "N_vdot": -0.00
 
 def filled(name: str, rng: np.random.Generator) -> Model:
     """The model with a value other than zero for every parameter."""
-    model = {"mmg": kvlcc2}.get(name, MODELS[name])()
-    if name == "abkowitz":
-        terms = {t: float(rng.normal(scale=0.01)) for t in TERMS}
-        return model.with_values(ABKOWITZ_SHIP | INERTIA | {"prime": 0.7} | terms)
+    known = {"mmg": kvlcc2, "mmg_roll": rolling_kvlcc2, "son_nomoto": container_ship}
+    model = known.get(name, MODELS[name])()
+    if name.startswith("abkowitz"):
+        rolling = {"GM": 0.2, "I_x": 600.0, "K_pdot": -1e-5} if name == "abkowitz_roll" else {}
+        small = {p.name: float(rng.normal(scale=0.01)) for p in model.parameters if p.value == 0.0}
+        return model.with_values(small | ABKOWITZ_SHIP | INERTIA | {"prime": 0.7} | rolling)
     if name == "heave_pitch_strip":
         at_rest = {"a33": 6e5, "b33": 8e5, "a35_0": 5e6, "b35_0": 3e6, "a55_0": 1e8, "b55_0": 1.5e8}
         return model.with_values({**at_rest, "lift_1": 2e6, "x_f1": -25.0}).with_ship(QI2025_SHIP)
@@ -40,7 +52,13 @@ def filled(name: str, rng: np.random.Generator) -> Model:
             .with_values({"lift_1": 2e6, "x_f1": -25.0, "lift_2": 1e6, "x_f2": 20.0})
         )
     small = {p.name: float(rng.normal(scale=0.01)) for p in model.parameters if p.value == 0.0}
-    return model.with_values(small | ({"A_T": 0.3, "A_L": 1.1, "U_0": 0.02} if name == "mmg" else {}))
+    return model.with_values(small | ({"A_T": 0.3, "A_L": 1.1, "U_0": 0.02} if name in known else {}))
+
+
+def rolling_kvlcc2() -> Model:
+    """The 7 m tanker with levers, GM and roll inertia of a rolling ship; chosen."""
+    ship = mmg_roll().with_values({"GM": 0.1, "I_x": 600.0, "J_x_prime": 1e-5})
+    return kvlcc2_l7().applied_to(ship)
 
 
 def call(model: Model, x: Array, u: Array, p: Array) -> Array:
@@ -77,8 +95,9 @@ def test_jacobians_equal_central_differences(model: Model, rng: np.random.Genera
             model.compiled.outputs_tangent(0.0, x, u, p, np.empty(len(g)), g)
         exact = np.vstack([jacobian, g])
         numeric = np.empty_like(exact)
+        sizes = np.maximum(np.abs(base), np.where(base == 0.0, 1e-2, np.minimum(1e-2, 100.0 * np.abs(base))))
         for j in range(columns):
-            h = 1e-6 * max(abs(base[j]), 1e-2)
+            h = 1e-6 * sizes[j]
             up, down = base.copy(), base.copy()
             up[j] += h
             down[j] -= h
@@ -92,8 +111,8 @@ def test_the_mirrored_ship_makes_the_mirrored_motion(name: str, rng: np.random.G
     model = filled(name, np.random.default_rng(7))
     values = dict(zip(model.parameters.names, model.parameters.values, strict=True))
     mirrored_values = {n: -v if n in ODD else v for n, v in values.items()}
-    if model.name == "abkowitz":
-        mirrored_values |= {t: v * _parity(t) for t, v in values.items() if t in TERMS}
+    if model.name.startswith("abkowitz"):
+        mirrored_values |= {t: v * _parity(t) for t, v in values.items() if t in ROLLING_TERMS}
     for plus, minus in SIDES.items():
         if plus in values:
             mirrored_values |= {plus: values[minus], minus: values[plus]}
@@ -109,8 +128,22 @@ def test_the_mirrored_ship_makes_the_mirrored_motion(name: str, rng: np.random.G
 
 def _parity(term: str) -> float:
     """Sign of a derivative in the mirror: odd letters of the variables and of the force must pair up."""
-    odd = sum(term[2:].count(letter) for letter in "vrd") + (term[0] in "YN")
+    odd = sum(variable != "u" for variable in variables_of(term[2:])) + (term[0] in "YKN")
     return -1.0 if odd % 2 else 1.0
+
+
+@pytest.mark.parametrize("name", ["mmg", "abkowitz"])
+def test_a_ship_that_cannot_heel_turns_as_in_the_plane(name: str, rng: np.random.Generator) -> None:
+    flat = filled(name, np.random.default_rng(7))
+    values = {p.name: p.value for p in flat.parameters}
+    ship = rolling_kvlcc2() if name == "mmg" else MODELS["abkowitz_roll"]().with_values({"GM": 0.2, "I_x": 600.0})
+    rolling = ship.with_values(values)
+    for _ in range(20):
+        x, u = point(flat, rng)
+        inputs = dict(zip(flat.input_names, u.tolist(), strict=True))
+        there = call(rolling, np.append(x, [0.0, 0.0]), np.array([inputs.get(n, 0.0) for n in rolling.input_names]),
+                     rolling.parameters.values)  # fmt: skip
+        np.testing.assert_allclose(there[:6], call(flat, x, u, flat.parameters.values)[:6], rtol=1e-9, atol=1e-12)
 
 
 @pytest.mark.parametrize("n", [-15.0, 0.0, 15.0])

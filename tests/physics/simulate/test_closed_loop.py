@@ -14,6 +14,7 @@ from seatrial.physics.loops import Block, Term, TransferLoop
 from seatrial.physics.loops.loop_states import plant_model, state_space
 from seatrial.physics.loops.structures import Preamplifier, fin_loop
 from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.models.published import container_ship
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop, closed_loop, hold_equivalent
 
@@ -174,6 +175,17 @@ def test_signs_are_the_notations_whatever_the_models() -> None:
     assert record["psi"][-1] == pytest.approx(0.2, abs=0.005)
     assert record["psi"].max() < 0.25
     assert record["u"][-1] == pytest.approx(0.8, abs=0.02)
+
+
+def test_a_ship_with_outputs_is_recorded_with_them() -> None:
+    ship = container_ship()
+    states, inputs = np.zeros(len(ship.states)), np.zeros(len(ship.inputs))
+    states[ship.states.index("u")], inputs[ship.input_names.index("n")] = 7.33, 70.0 / 60.0
+    loop = autopilot(Block("yaw", (0.0043,), (1.0, 0.02, 0.0)))
+    record = closed_loop(ship, loop, np.array([1.0, 30.0]), np.zeros(401), 0.5, reference=np.full(401, 0.05),
+                         start=states, inputs=inputs, limits=ActuatorLimits(0.3), **RUDDER)  # fmt: skip
+    assert record["thrust"][-1] > 1e5
+    assert record["psi"][-1] == pytest.approx(0.05, abs=0.01)
 
 
 def test_a_disturbance_may_act_where_the_actuator_does() -> None:

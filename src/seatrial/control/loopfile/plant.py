@@ -324,7 +324,7 @@ def _signal_names(table: PlantTable, file: ModelFile, path: Path) -> tuple[str, 
     ):
         if name:
             _demand_known(name, known, key, model, what)
-    for own in (FINS, STEERING):
+    for own in (STEERING, FINS):  # of a ship that turns and rolls, the heading
         has_them = own[0] in model.observables and set(own[1:]) - {""} <= set(model.input_names)
         if has_them and table.output in (None, own[0]) and table.actuator in (None, own[1]):
             return own[0], own[1], own[2] if table.disturbance is None else table.disturbance

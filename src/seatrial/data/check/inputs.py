@@ -13,6 +13,7 @@ from seatrial.core.values import Array, Finding, InputError, Record, Severity
 from seatrial.core.values.arrays import travel
 from seatrial.core.values.notation import COMMANDS as THRUSTER_COMMANDS
 from seatrial.data.check.channels import yaw_rate_lag
+from seatrial.data.check.phases import rolls_out
 from seatrial.data.check.time_base import INPUT_CHANNELS
 from seatrial.numerics.local_polynomials import smoothed_locally
 from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout, layout_of
@@ -33,8 +34,8 @@ def is_excited(record: Record) -> bool:
 
 
 def excitation_findings(record: Record) -> tuple[Finding, ...]:
-    """Return a warning on a rudder that never moves."""
-    if "delta" not in record or is_excited(record):
+    """Return a warning on a rudder that never moves, but for a ship that rolls out from a release."""
+    if "delta" not in record or is_excited(record) or rolls_out(record):
         return ()
     text = f"record '{record.name}': the rudder never moves, so nothing can be learnt about steering"
     span = f"range {math.degrees(float(np.ptp(record['delta']))):.2g} deg"

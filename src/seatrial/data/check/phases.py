@@ -357,10 +357,19 @@ class _Release:
     is_driven: bool
 
 
+def rolls_out(record: Record) -> bool:
+    """Return whether a ship rolls out from a release, under way or not, whatever else is recorded."""
+    return "phi" in record and _swing_release(record) is not None
+
+
 def _release(record: Record) -> _Release | None:
     """The release of a free decay; None of another record."""
+    return None if any(name in record for name in _DRIVEN) else _swing_release(record)
+
+
+def _swing_release(record: Record) -> _Release | None:
     channel = swinging_channel(record)
-    if not channel or any(name in record for name in _DRIVEN) or len(record) < _FEWEST_DECAY_ROWS:
+    if not channel or len(record) < _FEWEST_DECAY_ROWS:
         return None
     swing = about_rest(record[channel])
     size, row = np.abs(swing), release_row(swing)

@@ -100,13 +100,15 @@ class AutoRegression:
 
 
 def fit_auto_regression(
-    model: Model, train: Sequence[Record], features: Features, seconds: float
+    model: Model, train: Sequence[Record], features: Features, seconds: float, channels: Sequence[str] = _RATES
 ) -> AutoRegression | None:
-    """Return the ridge regression of the velocities that all runs hold; None where they hold none.
+    """Return the ridge regression of those of the channels that all runs hold; None where they hold none.
 
     seconds: of a window's beginning; the penalty is chosen by windows `_CHOICE_LENGTH` times as long.
     """
-    channels = tuple(c for c in _RATES if all(c in r and np.isfinite(r[c]).all() and np.ptp(r[c]) > 0.0 for r in train))
+    channels = tuple(
+        c for c in channels if all(c in r and np.isfinite(r[c]).all() and np.ptp(r[c]) > 0.0 for r in train)
+    )
     lags = max(_MIN_LAGS, round(_LAG_S / train[0].dt))
     if not channels or any(len(record) <= lags for record in train):
         return None
@@ -167,7 +169,7 @@ def _with_positions(window: Record, velocities: Mapping[str, Array], beginning: 
 
     values = {channel: _smoothed_beginning(y, beginning) for channel, y in velocities.items()}
     for position, rate in _INTEGRALS.items():
-        if position in window and rate in values:
+        if position in window and rate in values and position not in values:
             values[position] = integrated(position, values[rate])
     if {"psi", "u"} <= set(values) and {"x0", "y0"} <= set(window.channels):
         psi, u, v = values["psi"], values["u"], values.get("v", np.zeros(len(window)))

@@ -9,7 +9,7 @@ import numpy as np
 
 from seatrial.core.values import Array, Index, InputError, Record
 from seatrial.physics.manoeuvres.programme import roll_measures
-from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoeuvre, own_motion
+from seatrial.physics.manoeuvres.recognition import ManoeuvreKind, ObservedManoeuvre, own_motion, to_starboard
 from seatrial.physics.manoeuvres.track import Swing, mean_between, peak, speed, steady_turning
 
 # Values that a measure can take, and intervals that stay among them.
@@ -69,7 +69,7 @@ def _scale_of(name: str) -> _Scale | None:
     """None: the measure has no limits (transfer, residual yaw rate)."""
     if name == "speed_loss":
         return _RETAINED_SHARE
-    if name == "steady_drift_deg":
+    if name in ("steady_drift_deg", "steady_heel_deg"):
         return _DRIFT
     if name in _UNLIMITED:
         return None
@@ -218,7 +218,8 @@ def measures(
         ``steady_diameter_L``, ``steady_yaw_rate_deg_s``, ``steady_drift_deg``, ``speed_loss``. Turning circle with a
         pull-out: these and ``residual_yaw_rate_deg_s``. All with ``rudder_deg`` and ``approach_speed`` [m/s]; distances
         are positive to the side turned to, drift positive with the bow into the turn, residual rate positive to that
-        side.
+        side. With ``phi`` the largest heel out of the turn: of a turning circle ``heel_1_deg``, with
+        ``steady_heel_deg``; of a zigzag ``heel_1_deg``, …, each behind the execute of the overshoot of that number.
 
     Raises:
         InputError: psi or delta is missing or empty, the length is not positive, or `reference` has other times.
@@ -262,6 +263,9 @@ def _zigzag_measures(manoeuvre: ObservedManoeuvre, length: float, switching: flo
         travelled = _distance_run(manoeuvre.record, times[0], reached)
         if travelled is not None:
             made["initial_turning_L"] = travelled / length
+    for k, (start, stop) in enumerate(pairwise([*times[1:], float(manoeuvre.record.time[-1])]), start=1):
+        side = float(np.sign(manoeuvre.holds[k - 1].angle))
+        made |= _largest_heel(manoeuvre.record, side, start, stop, f"heel_{k}_deg")
     periods = [peaks[k + 2][0] - at for k, (at, _) in peaks.items() if k + 2 in peaks]
     if periods:
         made["period_s"] = float(np.mean(periods))
@@ -321,7 +325,26 @@ def _turning_circle_measures(manoeuvre: ObservedManoeuvre, length: float) -> dic
         made |= {"advance_L": at_quarter[0] / length, "transfer_L": at_quarter[1] / length}
     if at_half is not None:
         made["tactical_diameter_L"] = at_half[1] / length
-    return made | steady_turning(swing, float(manoeuvre.record.time[hold.last - 1]), length, made.get("approach_speed"))
+    stop = float(manoeuvre.record.time[hold.last - 1])
+    made |= _largest_heel(manoeuvre.record, swing.side, execute, stop, "heel_1_deg")
+    return made | steady_turning(swing, stop, length, made.get("approach_speed"))
+
+
+_LOBE = 0.8  # of the largest heel, down to which samples about it belong to its swing; chosen
+
+
+def _largest_heel(record: Record, side: float, start: float, stop: float, name: str) -> dict[str, float]:
+    """Return the largest heel out of a turn to `side` (1 starboard) between two times [s], where it is recorded."""
+    rows = np.flatnonzero((record.time >= start) & (record.time <= stop))
+    if "phi" not in record or not len(rows):
+        return {}
+    outward = -side * to_starboard(record, "phi")
+    top = rows[int(np.nanargmax(outward[rows]))]
+    low = rows[outward[rows] < _LOBE * outward[top]]
+    before, after = low[low < top], low[low > top]
+    first, last = before[-1] if len(before) else rows[0], after[0] if len(after) else rows[-1]
+    swing = peak(record.time, outward, float(record.time[first]), float(record.time[last]))
+    return {} if swing is None or swing[1] <= 0.0 else {name: float(np.degrees(swing[1]))}
 
 
 def _pull_out_measures(manoeuvre: ObservedManoeuvre) -> dict[str, float]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from seatrial.core.values import Array, Record, RecordKind
 from seatrial.numerics.local_polynomials import smoothed_locally
-from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre
+from seatrial.physics.manoeuvres.recognition import ObservedManoeuvre, to_starboard
 
 _TURN_TOLERANCE = 1e-3  # rad by which a full turn may fall short: rounding
 
@@ -126,7 +126,8 @@ def mean_between(record: Record, values: Array, start: float, stop: float) -> fl
 def steady_turning(swing: Swing, stop: float, length: float, approach: float | None) -> dict[str, float]:
     """Steady turning measures over the last 180 deg of heading before `stop` [s]; none before 360 deg are turned.
 
-    Yaw rate [deg/s], drift [deg] (positive with the bow into the turn), final diameter 2 U / r [L], loss of speed.
+    Yaw rate [deg/s], drift [deg] (positive with the bow into the turn), final diameter 2 U / r [L], loss of speed;
+    heel [deg], positive out of the turn.
     """
     turned = swing.side * (swing.manoeuvre.psi_at(stop) - swing.manoeuvre.psi_at(swing.start))
     begin = swing.time_of(turned - np.pi)
@@ -135,6 +136,9 @@ def steady_turning(swing: Swing, stop: float, length: float, approach: float | N
     record = swing.manoeuvre.record
     rate = np.pi / (stop - begin)
     made = {"steady_yaw_rate_deg_s": float(np.degrees(rate))}
+    heel = mean_between(record, -swing.side * to_starboard(record, "phi"), begin, stop) if "phi" in record else None
+    if heel is not None:
+        made["steady_heel_deg"] = float(np.degrees(heel))
     flow = speed(record)
     mean = None if flow is None else mean_between(record, flow, begin, stop)
     if mean is None:

@@ -24,6 +24,13 @@ FREED_PARAMETERS: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyType
             "added masses": ("m_x_prime", "m_y_prime", "J_z_prime"),
             "even terms": ("Y_dd", "N_dd"),
         },
+        "son_nomoto": {
+            "heel in sway and yaw": ("Y_phi", "N_phi"),
+            "roll rate in sway and yaw": ("Y_p", "N_p"),
+            "cubic roll moment": ("K_vvv", "K_rrr", "K_vvr", "K_vrr"),
+            "drift and heel": ("Y_vvphi", "Y_vphiphi", "N_vvphi", "N_vphiphi"),
+            "damping at rest": ("b_1", "b_2"),
+        },
         "abkowitz": {
             "cubic rudder": ("Y_ddd", "N_ddd"),
             "rudder and drift": ("Y_vvd", "Y_vdd", "N_vvd", "N_vdd"),
@@ -70,7 +77,29 @@ def candidate_terms(model: Model) -> tuple[str, ...]:
 PHYSICAL_SIGNS: Mapping[str, Mapping[str, int]] = MappingProxyType(
     {
         "mmg": {"m_x_prime": 1, "m_y_prime": 1, "J_z_prime": 1, "R_0": 1, "Y_v": -1, "N_r": -1},
+        "mmg_roll": {"m_x_prime": 1, "m_y_prime": 1, "J_z_prime": 1, "R_0": 1, "Y_v": -1, "N_r": -1, "GM": 1, "b_1": 1},
         "abkowitz": {"X_udot": -1, "Y_vdot": -1, "N_rdot": -1, "Y_v": -1, "N_r": -1},
+        "abkowitz_roll": {
+            "X_udot": -1,
+            "Y_vdot": -1,
+            "N_rdot": -1,
+            "K_pdot": -1,
+            "Y_v": -1,
+            "N_r": -1,
+            "K_p": -1,
+            "GM": 1,
+        },
+        "son_nomoto": {
+            "m_x_prime": 1,
+            "m_y_prime": 1,
+            "J_z_prime": 1,
+            "J_x_prime": 1,
+            "GM": 1,
+            "X_uu": -1,
+            "Y_v": -1,
+            "N_r": -1,
+            "K_p": -1,
+        },
         "waterjet": {"m_x": 1, "m_y": 1, "J_z": 1},
         "waterjet_candidates": {"m_x": 1, "m_y": 1, "J_z": 1},
     }

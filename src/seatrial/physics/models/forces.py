@@ -1,5 +1,6 @@
 """Kinematics and forces that models share: pose, rudder, wind; and what a derivative's name means."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import groupby
@@ -10,8 +11,13 @@ from seatrial.core.equations import Sheet
 
 # What a hydrodynamic coefficient stands for, from its name: ``Y_vvr`` multiplies v^2 r in the sway force.
 
-_FORCES = {"X": "surge force", "Y": "sway force", "N": "yaw moment", "R": "resistance"}
+_FORCES = {"X": "surge force", "Y": "sway force", "K": "roll moment", "N": "yaw moment", "R": "resistance"}
 _VARIABLES = {"d": "delta"}
+
+
+def variables_of(term: str) -> list[str]:
+    """Return the variables that a coefficient multiplies, from the letters behind its underscore: ``vvphi``."""
+    return re.findall("phi|[a-z]", term)
 
 
 def derivative_meaning(name: str, term: str = "") -> str:
@@ -20,7 +26,7 @@ def derivative_meaning(name: str, term: str = "") -> str:
     term: what it multiplies, where that is not the product of the letters behind the underscore, such as ``v|v|``.
     """
     force, _, letters = name.partition("_")
-    powers = ((_VARIABLES.get(letter, letter), len(list(same))) for letter, same in groupby(letters.replace("0", "")))
+    powers = ((_VARIABLES.get(letter, letter), len(list(same))) for letter, same in groupby(variables_of(letters)))
     product = term or " ".join(f"{letter}^{power}" if power > 1 else letter for letter, power in powers)
     return f"{_FORCES[force]} from {product}" if product else f"{_FORCES[force]} straight ahead"
 
@@ -39,7 +45,7 @@ class Current:
 
 
 def pose_rates(
-    sheet: Sheet, u: sp.Expr, v: sp.Expr, r: sp.Symbol, psi: sp.Symbol, x0: sp.Symbol, y0: sp.Symbol
+    sheet: Sheet, u: sp.Expr, v: sp.Expr, r: sp.Expr, psi: sp.Symbol, x0: sp.Symbol, y0: sp.Symbol
 ) -> Current:
     """Give the rates of psi, x0, y0 for velocities u, v through the water; return the current."""
     north = sheet.parameter("current_north", 0.0, "m/s", "current towards north", "none assumed", scale=0.1)

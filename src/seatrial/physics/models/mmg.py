@@ -28,6 +28,16 @@ from seatrial.physics.models.forces import (
     pose_rates,
     wind_force,
 )
+from seatrial.physics.models.roll_coupling import (
+    ROLL_TERMS,
+    ShipForces,
+    ShipInertia,
+    ShipMotion,
+    coupled_accelerations,
+    roll_moment,
+    rolling_motion,
+    wind_on_rolling_ship,
+)
 
 HULL_X = ("R_0", "X_vv", "X_vr", "X_rr", "X_vvvv")
 HULL_Y = ("Y_v", "Y_r", "Y_vvv", "Y_vvr", "Y_vrr", "Y_rrr")
@@ -194,28 +204,55 @@ def _rudder(
     return X_R, Y_R, N_R
 
 
-def _accelerations(sheet: Sheet, motion: _Motion, X: sp.Symbol, Y: sp.Symbol, N: sp.Symbol) -> None:
-    """Write the accelerations; X_m, Y_m, N_m are what a balance feels that holds the ship in steady motion."""
+@dataclass(frozen=True)
+class _Masses:
+    """Masses and inertia with added ones, M_c = m x_G; m, m_y' and rho/2 L^2 d."""
+
+    M_u: sp.Symbol
+    M_v: sp.Symbol
+    M_c: sp.Symbol
+    M_r: sp.Symbol
+    m: sp.Symbol
+    m_y: sp.Symbol
+    unit: sp.Symbol
+
+
+_EQUATIONS = f"{YASUKAWA}, equations of motion"
+
+
+def _masses(sheet: Sheet, motion: _Motion) -> _Masses:
     m = sheet.parameter("m", unit="kg", meaning="mass")
     x_G = sheet.parameter("x_G", unit="m", meaning="centre of gravity forward of midship")
     I_z = sheet.parameter("I_z", unit="kg m^2", meaning="yaw inertia about the centre of gravity")
     m_x = sheet.parameter("m_x_prime", meaning="surge added mass over rho/2 L^2 d", latex="m'_x")
     m_y = sheet.parameter("m_y_prime", meaning="sway added mass over rho/2 L^2 d", latex="m'_y")
     J_z = sheet.parameter("J_z_prime", meaning="yaw added inertia over rho/2 L^4 d", latex="J'_z")
-    equation = f"{YASUKAWA}, equations of motion"
     unit = sheet.bind("m_L", motion.q * motion.L, "rho/2 L^2 d", "kg")
-    M_u = sheet.bind("M_u", m + m_x * unit, equation, "kg")
-    M_v = sheet.bind("M_v", m + m_y * unit, equation, "kg")
-    M_c = sheet.bind("M_c", m * x_G, equation, "kg m")
-    M_r = sheet.bind("M_r", I_z + M_c * x_G + J_z * unit * motion.L**2, equation, "kg m^2")
+    M_u = sheet.bind("M_u", m + m_x * unit, _EQUATIONS, "kg")
+    M_v = sheet.bind("M_v", m + m_y * unit, _EQUATIONS, "kg")
+    M_c = sheet.bind("M_c", m * x_G, _EQUATIONS, "kg m")
+    M_r = sheet.bind("M_r", I_z + M_c * x_G + J_z * unit * motion.L**2, _EQUATIONS, "kg m^2")
+    return _Masses(M_u, M_v, M_c, M_r, m, m_y, unit)
+
+
+def _with_centripetal(
+    sheet: Sheet, motion: _Motion, masses: _Masses, X: sp.Symbol, Y: sp.Symbol, N: sp.Symbol
+) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+    """Return X_m, Y_m, N_m: what a balance feels that holds the ship in steady motion."""
+    u_r = sheet.bind("u_r", motion.u * motion.r, _EQUATIONS, "m/s^2")
+    X_m = sheet.bind("X_m", X + masses.M_v * motion.v * motion.r + masses.M_c * motion.r**2, _EQUATIONS, "N")
+    Y_m = sheet.bind("Y_m", Y - masses.M_u * u_r, _EQUATIONS, "N")
+    return X_m, Y_m, sheet.bind("N_m", N - masses.M_c * u_r, _EQUATIONS, "N m")
+
+
+def _accelerations(sheet: Sheet, motion: _Motion, X: sp.Symbol, Y: sp.Symbol, N: sp.Symbol) -> None:
+    masses = _masses(sheet, motion)
+    M_v, M_c, M_r = masses.M_v, masses.M_c, masses.M_r
     D = sheet.bind("D_M", M_v * M_r - M_c**2, "determinant of the inertia matrix", "kg^2 m^2")
-    u_r = sheet.bind("u_r", motion.u * motion.r, equation, "m/s^2")
-    X_m = sheet.bind("X_m", X + M_v * motion.v * motion.r + M_c * motion.r**2, equation, "N")
-    Y_m = sheet.bind("Y_m", Y - M_u * u_r, equation, "N")
-    N_m = sheet.bind("N_m", N - M_c * u_r, equation, "N m")
-    sheet.rate(motion.u, X_m / M_u, equation)
-    sheet.rate(motion.v, (Y_m * M_r - N_m * M_c) / D, f"{equation}, inertia matrix inverted")
-    sheet.rate(motion.r, (N_m * M_v - Y_m * M_c) / D, f"{equation}, inertia matrix inverted")
+    X_m, Y_m, N_m = _with_centripetal(sheet, motion, masses, X, Y, N)
+    sheet.rate(motion.u, X_m / masses.M_u, _EQUATIONS)
+    sheet.rate(motion.v, (Y_m * M_r - N_m * M_c) / D, f"{_EQUATIONS}, inertia matrix inverted")
+    sheet.rate(motion.r, (N_m * M_v - Y_m * M_c) / D, f"{_EQUATIONS}, inertia matrix inverted")
 
 
 @cache
@@ -241,3 +278,72 @@ def mmg() -> Model:
     N = sheet.bind("N_sum", N_H + by.N_P + N_R + wind.N, f"{YASUKAWA}, N_m of the equations of motion", "N m")
     _accelerations(sheet, motion, X, Y, N)
     return sheet.model()
+
+
+# With roll: the side forces of hull and rudder act below G, and heel changes those of the hull.
+
+ROLLING = "Yasukawa, Sakuno & Yoshimura 2019, J Mar Sci Technol 24, 1280-1296, doi 10.1007/s00773-019-00625-4"
+HEEL = (*(f"X_{t}" for t in ("phiphi", "vphi", "rphi")), *(f"{f}_{t}" for f in "YN" for t in ROLL_TERMS))
+HEEL_FREE = ("Y_phi", "N_phi")
+
+
+def _heeled(sheet: Sheet, motion: _Motion, ship: ShipMotion) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+    """Return what heel adds to surge and sway force and yaw moment of the hull."""
+    c = {name: _coefficient(sheet, name, free=name in HEEL_FREE) for name in HEEL}
+    v, r_L, U, phi = motion.v, motion.r_L, motion.U, ship.heel
+    powers = {"phi": phi * U**2, "vvphi": v**2 * phi, "vphiphi": v * phi**2 * U, "rrphi": r_L**2 * phi,
+              "rphiphi": r_L * phi**2 * U}  # fmt: skip
+    Y, N = (sum(c[f"{force}_{term}"] * value for term, value in powers.items()) for force in "YN")
+    X = c["X_phiphi"] * phi**2 * U**2 + c["X_vphi"] * v * phi * U + c["X_rphi"] * r_L * phi * U
+    source = f"{ROLLING}, derivatives of heel"
+    return (
+        sheet.bind("X_heel", motion.q * X, source, "N"),
+        sheet.bind("Y_heel", motion.q * Y, source, "N"),
+        sheet.bind("N_heel", motion.q * motion.L * N, source, "N m"),
+    )
+
+
+def _roll_inertia(sheet: Sheet, motion: _Motion, masses: _Masses) -> ShipInertia:
+    I_x = sheet.parameter("I_x", unit="kg m^2", meaning="roll inertia about the centre of gravity")
+    J_x = sheet.parameter("J_x_prime", 0.0, meaning="roll added inertia over rho/2 L^4 d", scale=1e-5, latex="J'_x")
+    l_y = sheet.parameter("l_y_prime", 0.0, meaning="depth of the sway added mass below G over L", scale=0.01,
+                          latex="l'_y")  # fmt: skip
+    M_p = sheet.bind("M_p", I_x + J_x * masses.unit * motion.L**2, f"{ROLLING}, equations of motion", "kg m^2")
+    M_vp = sheet.bind("M_vp", -masses.m_y * l_y * masses.unit * motion.L, f"{ROLLING}, equations of motion", "kg m")
+    return ShipInertia(masses.M_u, masses.M_v, M_p, masses.M_r, M_vp, M_vp, masses.M_c, masses.M_c)
+
+
+@cache
+def mmg_roll() -> Model:
+    """Return the standard method with roll; hull, lever z_H of its side force, GM and damping are free.
+
+    States u, v, r at midship, psi, x0, y0, phi [rad], p [rad/s] about an axis at the height of G; inputs and output as
+    `mmg`, with alpha_w and alpha_f [rad]. Levers are positive below G.
+    """
+    sheet = Sheet("mmg_roll", ROLLING, "MMG with roll, propeller, rudder, fins and wind")
+    ship, current = rolling_motion(sheet)
+    delta, n = sheet.input("delta"), sheet.input("n")
+    motion = _motion(sheet, ship.u, ship.v, ship.r, delta)
+    X_H, Y_H, N_H = _hull(sheet, motion)
+    X_F, Y_F, N_F = _heeled(sheet, motion, ship)
+    by = _propeller(sheet, motion, n)
+    X_R, Y_R, N_R = _rudder(sheet, motion, by, n)
+    wind = wind_on_rolling_ship(sheet, ship, current, motion.L, motion.U_0)
+    X = sheet.bind("X_sum", X_H + X_F + by.X_P + X_R + wind.X, f"{ROLLING}, X of the equations of motion", "N")
+    Y = sheet.bind("Y_sum", Y_H + Y_F + by.Y_P + Y_R + wind.Y, f"{ROLLING}, Y of the equations of motion", "N")
+    N = sheet.bind("N_sum", N_H + N_F + by.N_P + N_R + wind.N, f"{ROLLING}, N of the equations of motion", "N m")
+    masses = _masses(sheet, motion)
+    inertia = _roll_inertia(sheet, motion, masses)
+    X_m, Y_m, N_m = _with_centripetal(sheet, motion, masses, X, Y, N)
+    z_H, z_R = (
+        sheet.parameter(f"{name}_prime", 0.0, meaning=f"depth of the {what} below G over L", free=is_free, scale=0.01,
+                        latex=f"z'_{name[2]}")
+        for name, what, is_free in (("z_H", "hull's side force", True), ("z_R", "rudder's side force", False))
+    )  # fmt: skip
+    unit = motion.q * motion.L * motion.U**2
+    static = roll_moment(sheet, ship, inertia.M_p, masses.m, unit)
+    levers = motion.L * (z_H * (Y_H + Y_F) + z_R * Y_R)
+    K = sheet.bind("K_sum", static - levers + wind.K, f"{ROLLING}, side force times its lever", "N m")
+    coupled_accelerations(sheet, ship, inertia, ShipForces(X_m, Y_m, K, N_m))
+    model = sheet.model()
+    return model.with_parameters(model.parameters.freed("b_1", "b_2"))

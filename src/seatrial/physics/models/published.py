@@ -190,6 +190,45 @@ def esso_osaka() -> ParameterSet:
     return ParameterSet("esso-osaka", "mmg", ship, {**_ESSO, **converted}, MIYAUCHI, _ESSO_NOTE)
 
 
+# The container ship S175 (SR 108), GM 0.3 m, 15 kn: primes of rho/2 L^3 and rho/2 L^5, K_T = k_0 + k_1 J.
+SON_NOMOTO = (
+    "Son & Nomoto 1981, J. Soc. Nav. Archit. Japan 150, 232-244, as printed by Fossen 1994, Guidance and Control of "
+    "Ocean Vehicles, appendix E.1.3"
+)
+_S175_LENGTH, _S175_UNIT_MASS = 175.0, 0.5 * 1025.0 * 175.0**3  # m; rho/2 L^3 [kg]
+_S175_SHIP = {
+    "L": _S175_LENGTH, "B": 25.40, "d": 8.50, "volume": 21222.0, "C_b": 21222.0 / (175.0 * 25.40 * 8.50),
+    "m": 0.00792 * _S175_UNIT_MASS, "rho": 1025.0, "D_P": 6.533, "A_R": 33.0376, "GM": 0.3,
+    "I_x": 0.0000176 * _S175_UNIT_MASS * _S175_LENGTH**2, "I_z": 0.000456 * _S175_UNIT_MASS * _S175_LENGTH**2,
+}  # fmt: skip
+_S175 = {
+    "m_x_prime": 0.000238, "m_y_prime": 0.007049, "J_x_prime": 0.0000034, "J_z_prime": 0.000419,
+    "l_x_prime": 0.0313, "l_y_prime": 0.0313, "alpha_y_prime": 0.05,
+    "X_uu": -0.0004226, "X_vr": -0.00311, "X_vv": -0.00386, "X_rr": 0.00020, "X_phiphi": -0.00020,
+    "Y_v": -0.0116, "Y_r": 0.00242, "Y_p": 0.0, "Y_phi": -0.000063, "Y_vvv": -0.109, "Y_rrr": 0.00177,
+    "Y_vvr": 0.0214, "Y_vrr": -0.0405, "Y_vvphi": 0.04605, "Y_vphiphi": 0.00304, "Y_rrphi": 0.009325,
+    "Y_rphiphi": -0.001368,
+    "K_v": 0.0003026, "K_r": -0.000063, "K_p": -0.0000075, "K_phi": -0.000021, "K_vvv": 0.002843,
+    "K_rrr": -0.0000462, "K_vvr": -0.000588, "K_vrr": 0.0010565, "K_vvphi": -0.0012012, "K_vphiphi": -0.0000793,
+    "K_rrphi": -0.000243, "K_rphiphi": 0.00003569,
+    "N_v": -0.0038545, "N_r": -0.00222, "N_p": 0.000213, "N_phi": -0.0001424, "N_vvv": 0.001492,
+    "N_rrr": -0.00229, "N_vvr": -0.0424, "N_vrr": 0.00156, "N_vvphi": -0.019058, "N_vphiphi": -0.0053766,
+    "N_rrphi": -0.0038592, "N_rphiphi": 0.0024195,
+    "t_P": 0.175, "w_P0": 0.184, "tau_P": 1.09, "x_P_prime": -0.526, "k_0": 0.527, "k_1": -0.455,
+    "kappa": 0.631, "epsilon": 0.921, "gamma_R": 0.088, "c_Rr": -0.156, "c_Rrrr": -0.275, "c_Rrrv": 1.96,
+    "c_RX": 0.71, "a_H": 0.237, "x_R_prime": -0.5, "x_H_prime": -0.48, "z_R_prime": 0.033,
+    "f_alpha": 6.13 * 1.8219 / (1.8219 + 2.25),
+}  # fmt: skip
+
+
+@cache
+def s175() -> ParameterSet:
+    """Return the container ship S175 with GM 0.3 m at 15 kn, full scale in sea water."""
+    ship = Ship("container ship S175", _S175_SHIP, SON_NOMOTO)
+    note = "m_y' 0.007049, where an early print has 0.000238; c_Pv and c_Pr are 0; f_alpha of the aspect ratio 1.8219"
+    return ParameterSet("s175", "son_nomoto", ship, _S175, SON_NOMOTO, note)
+
+
 # L from I5/m = (0.25 L)^2, B from the section area of table 1 over the draught
 QI2025_SHIP = Ship(
     "ship of Qi et al. 2025",
@@ -218,6 +257,7 @@ PARAMETER_SETS: dict[str, Callable[[], ParameterSet]] = {
     "kvlcc2": kvlcc2_l7,
     "kvlcc2-full": kvlcc2_full,
     "esso-osaka": esso_osaka,
+    "s175": s175,
     **{f"qi2025-{heading}": partial(theoretical_coefficients, heading) for heading in QI2025_HEADINGS},
 }
 
@@ -231,6 +271,13 @@ def parameter_set(name: str) -> ParameterSet:
     if name not in PARAMETER_SETS:
         raise InputError(f"unknown parameter set '{name}'{spelling_hint(name, sorted(PARAMETER_SETS))}")
     return PARAMETER_SETS[name]()
+
+
+def container_ship() -> Model:
+    """Return the model of Son & Nomoto with the published coefficients of the container ship S175."""
+    from seatrial.physics.models.son_nomoto import son_nomoto
+
+    return s175().applied_to(son_nomoto())
 
 
 def kvlcc2() -> Model:

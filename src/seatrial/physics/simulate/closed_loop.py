@@ -11,6 +11,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, DivergedError, InputError, Provenance, Record, frozen, spelling_hint
 from seatrial.numerics.kernels import feedback
 from seatrial.numerics.kernels.feedback import sampled_controller, steer
+from seatrial.numerics.kernels.integrate import evaluate
 from seatrial.numerics.kernels.linear import propagators, replay
 from seatrial.physics.loops import Block, TransferLoop
 from seatrial.physics.loops.discrete import difference_equation, holding_terms
@@ -441,7 +442,10 @@ class ClosedLoop:
         if disturbed not in (-1, place):
             inputs[:, disturbed] += self._sign(disturbed) * disturbance
         time = frozen(self.dt * np.arange(len(states)))
-        made = record_of(self.model, name, time, states, np.empty((len(states), 0)), inputs)
+        outputs = np.empty((len(states), len(self.model.outputs)))
+        if self.model.outputs:
+            evaluate(self.model.compiled.outputs, states, inputs, self.model.parameters.values, 0.0, outputs)
+        made = record_of(self.model, name, time, states, outputs, inputs)
         if reference is not None:
             about = made.channel(self.output)
             made = made.with_channel(REFERENCE, replace(about, values=frozen(reference)))
