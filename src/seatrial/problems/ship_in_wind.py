@@ -41,6 +41,7 @@ INPUTS = ("n", "delta", "wind_speed", "wind_direction")
 BEGINNING_S, WINDOW_S = 100.0, 500.0
 """Seconds of a window that a method sees, as the open benchmark has it, and of the whole window; chosen."""
 _DT, _SECONDS = 1.0, 1500.0  # s: sample of the data set, length of a run; chosen
+# runs of each kind; chosen
 _RUNS = {"training": 8, "inside": 4, "outside": 4}
 # of orders: shortest and longest time that one is held [s]; rate of the rudder [rad/s]; memory of gusts [s]; chosen
 _HOLD_S, _RUDDER_RATE, _GUST_S = (30.0, 120.0), math.radians(2.3), 20.0
@@ -61,7 +62,9 @@ class Distribution:
     wind: tuple[float, float]
 
 
+# rpm, deg and m/s; chosen
 ROUTINE = Distribution((60.0, 100.0), 10.0, (3.0, 10.0))
+# rpm, deg and m/s; chosen
 BEYOND = Distribution((45.0, 110.0), 25.0, (12.0, 18.0))
 
 

@@ -204,6 +204,7 @@ def _full_rolling_model() -> Model:
     I_x = sheet.parameter("I_x", unit="kg m^2", meaning="roll inertia about the centre of gravity")
     Y_pdot, K_vdot, K_pdot = (
         sheet.parameter(n, 0.0, latex=f"{n[0]}'_{{\\dot {n[2]}}}", meaning="added mass", scale=scale)
+        # characteristic sizes, 1; chosen
         for n, scale in (("Y_pdot", 1e-3), ("K_vdot", 1e-3), ("K_pdot", 1e-5))
     )
     i = _inertia(sheet, e)

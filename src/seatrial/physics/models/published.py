@@ -196,11 +196,13 @@ SON_NOMOTO = (
     "Ocean Vehicles, appendix E.1.3"
 )
 _S175_LENGTH, _S175_UNIT_MASS = 175.0, 0.5 * 1025.0 * 175.0**3  # m; rho/2 L^3 [kg]
+# particulars, SI; inertias from the printed primes
 _S175_SHIP = {
     "L": _S175_LENGTH, "B": 25.40, "d": 8.50, "volume": 21222.0, "C_b": 21222.0 / (175.0 * 25.40 * 8.50),
     "m": 0.00792 * _S175_UNIT_MASS, "rho": 1025.0, "D_P": 6.533, "A_R": 33.0376, "GM": 0.3,
     "I_x": 0.0000176 * _S175_UNIT_MASS * _S175_LENGTH**2, "I_z": 0.000456 * _S175_UNIT_MASS * _S175_LENGTH**2,
 }  # fmt: skip
+# as printed, dimensionless
 _S175 = {
     "m_x_prime": 0.000238, "m_y_prime": 0.007049, "J_x_prime": 0.0000034, "J_z_prime": 0.000419,
     "l_x_prime": 0.0313, "l_y_prime": 0.0313, "alpha_y_prime": 0.05,
