@@ -101,16 +101,15 @@ def actuator_response(records: Sequence[Record], actuator: str) -> ActuatorRespo
     )
     starts = [np.array([math.log(fastest), dead, math.log(lag)]) for dead, lag in product(_DEAD_TIMES, _LAGS)]
     start = min(starts, key=lambda unknowns: float(np.sum(residuals(unknowns) ** 2)))
-    solution = least_squares(residuals, start, bounds=bounds, diff_step=_DIFFERENCE)
+    solution = least_squares(residuals, start, bounds=bounds, diff_step=np.full(3, _DIFFERENCE))
     scatter = float(np.std(solution.fun))
     if max(float(np.ptp(order)) for _, order, _ in runs) < _MOVES * scatter:
         raise InputError(f"'{actuator}' does not follow '{wanted}' in the log; are both channels named rightly?")
     rate, lag = np.exp(solution.x[[0, 2]]).tolist()
     is_reached = _share_at_rate(runs, rate, solution.x[1], lag) >= _SHOWN
     places = np.arange(3) if is_reached else np.array([1, 2])
-    covariance = (
-        np.linalg.pinv(solution.jac[:, places].T @ solution.jac[:, places]) * scatter**2 * _inflation(solution.fun)
-    )
+    slopes = np.asarray(solution.jac, dtype=np.float64)[:, places]
+    covariance = np.linalg.pinv(slopes.T @ slopes) * scatter**2 * _inflation(solution.fun)
     half_sample = 0.5 * max(float(np.median(np.diff(time))) for time, _, _ in runs)
     errors = dict(zip(places.tolist(), (_MIDDLE_95 * np.sqrt(np.diag(covariance))).tolist(), strict=True))
     return ActuatorResponse(

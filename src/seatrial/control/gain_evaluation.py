@@ -414,12 +414,13 @@ class _LocalProblem:
                 return None
             slope, excess, rows = self.slopes(x)
             rows = rows[np.ix_(held, free)]
-            multipliers = np.linalg.lstsq(rows.T, -slope[free], rcond=None)[0]
+            multipliers: Array = np.asarray(np.linalg.lstsq(rows.T, -slope[free], rcond=None)[0], dtype=np.float64)
             curvature = self._curvature(x, free, held, multipliers)
             if curvature is None:
                 return None
             system = np.block([[curvature, rows.T], [rows, np.zeros((len(held), len(held)))]])
-            step = np.linalg.lstsq(system, -np.concatenate([slope[free], excess[held]]), rcond=None)[0]
+            solved = np.linalg.lstsq(system, -np.concatenate([slope[free], excess[held]]), rcond=None)[0]
+            step: Array = np.asarray(solved, dtype=np.float64)
             if np.abs(step[:count]).max(initial=0.0) > _LARGEST_NEWTON_STEP:
                 return None
             x[free] += step[:count]

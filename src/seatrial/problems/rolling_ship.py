@@ -96,16 +96,21 @@ _IN_A_TANK = {
 }  # fmt: skip
 # speeds [m/s] on a straight course at 70, 100, 85 and 40 rpm; chosen
 _MANOEUVRES = {"zigzag:10/10": 7.33, "zigzag:20/20": 10.47, "turning-circle:35": 8.90, "turning-circle:15": 10.47}
+# speeds [m/s] of the model in a tank; chosen: as tried by SIMMAN, and one slower
 _TANK_MANOEUVRES = {"zigzag:10/10": 1.18, "zigzag:20/20": 1.18, "turning-circle:35": 1.18, "turning-circle:15": 0.9}
-_ONE_SPEED = dict.fromkeys(_MANOEUVRES, 7.33)
+# speed [m/s] of every run about which is expanded, that of 70 rpm
+_EXPANDED_SPEED = 7.33
+_ONE_SPEED = dict.fromkeys(_MANOEUVRES, _EXPANDED_SPEED)
 _S175_PROPULSION = 70.0 / 60.0 / 7.329588  # rps over m/s of a straight course
 
 
 def rolling_container_ship() -> RollingShip:
     """Return the container ship S175 as published."""
+    # decays at 70 and 40 rpm, s: chosen
     return RollingShip(
-        container_ship(), _AT_SEA, _MANOEUVRES, {10.0: 7.33, -10.0: 4.19}, _S175_PROPULSION, 1.0, 60.0, 900.0, 400.0
-    )
+        container_ship(), _AT_SEA, _MANOEUVRES, decays={10.0: 7.33, -10.0: 4.19}, propulsion=_S175_PROPULSION,
+        dt=1.0, approach=60.0, seconds=900.0, decay=400.0,
+    )  # fmt: skip
 
 
 # levers, roll inertia and damping of the tanker; chosen: a tender ship, k_xx 0.4 B, added inertia a fifth of it
@@ -118,9 +123,11 @@ _TANKER_ROLL = {
 def rolling_tanker() -> RollingShip:
     """Return the 7 m model of KVLCC2 with chosen values of what concerns roll."""
     model = kvlcc2_l7().applied_to(mmg_roll().with_values(_TANKER_ROLL))
+    # decays at two speeds, 10.4 rps at 1.18 m/s, s: chosen
     return RollingShip(
-        model, _IN_A_TANK, _TANK_MANOEUVRES, {10.0: 1.18, -10.0: 0.6}, 10.4 / 1.18, 0.2, 10.0, 150.0, 60.0
-    )
+        model, _IN_A_TANK, _TANK_MANOEUVRES, decays={10.0: 1.18, -10.0: 0.6}, propulsion=10.4 / 1.18,
+        dt=0.2, approach=10.0, seconds=150.0, decay=60.0,
+    )  # fmt: skip
 
 
 # the hull of S175 in the expansion: centripetal terms of added masses moved into Y_r, X_vr and K_r; rudder as printed
@@ -139,7 +146,11 @@ _EXPANSION = {
 def rolling_expansion() -> RollingShip:
     """Return the expansion of Abkowitz with the hull of S175 at one speed."""
     model = abkowitz_roll().with_values(_EXPANSION).with_ship(s175().ship)
-    return RollingShip(model, _AT_SEA, _ONE_SPEED, {10.0: 7.33, -10.0: 7.33}, 0.0, 1.0, 60.0, 900.0, 400.0)
+    decays = dict.fromkeys((10.0, -10.0), _EXPANDED_SPEED)  # deg to either side; chosen
+    # s, as of the container ship; chosen
+    return RollingShip(
+        model, _AT_SEA, _ONE_SPEED, decays, propulsion=0.0, dt=1.0, approach=60.0, seconds=900.0, decay=400.0
+    )
 
 
 def problems() -> tuple[BenchmarkProblem, ...]:

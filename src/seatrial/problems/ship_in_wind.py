@@ -101,9 +101,9 @@ def _run(model: Model, name: str, distribution: Distribution, rng: np.random.Gen
     mean, side = rng.uniform(*distribution.wind), rng.uniform(0.0, 2.0 * np.pi)
     wind = {
         "wind_speed": np.maximum(mean * (1.0 + 0.15 * _gusts(count, rng)), 0.0),  # 0.15: share of gusts; chosen
-        "wind_direction": side + np.radians(5.0) * _gusts(count, rng),
+        "wind_direction": side + np.radians(5.0) * _gusts(count, rng),  # 5 deg: of its gusts; chosen
     }
-    inputs = {"n": rpm / 60.0, "delta": rudder} | wind
+    inputs = {"n": rpm / 60.0, "delta": rudder} | wind  # 60 s a minute
     planned = Record.from_arrays(name, _DT * np.arange(count, dtype=np.float64), inputs)
     start = dict.fromkeys(model.states, 0.0) | {"u": 7.33 / 70.0 * float(rpm[0])}  # m/s a rpm on a straight course
     run = replay(model, planned, start)
@@ -182,18 +182,18 @@ Predictor = Callable[[Windows], Sequence[Record]]
 
 def rivals(model: Model, training: Sequence[Record]) -> Mapping[str, Predictor]:
     """Return an ARX and a NARX model of the outputs, trained, by name."""
-    seen = [_with_wind_off_the_bow(record) for record in training]
-    found: dict[str, Predictor] = {}
+    records = [_with_wind_off_the_bow(record) for record in training]
+    predictors: dict[str, Predictor] = {}
     for name, features in ((ARX, linear_features), (NARX, quadratic_features)):
-        regression = fit_auto_regression(model, seen, partial(_of_wind_components, features), BEGINNING_S, OUTPUTS)
+        regression = fit_auto_regression(model, records, partial(_of_wind_components, features), BEGINNING_S, OUTPUTS)
         assert regression is not None  # the runs hold all outputs
-        found[name] = partial(_regressed, regression)
-    return found
+        predictors[name] = partial(_regressed, regression)
+    return predictors
 
 
 def _regressed(regression: AutoRegression, windows: Windows) -> Sequence[Record]:
-    seen = replace(windows, records=[_with_wind_off_the_bow(record) for record in windows.records])
-    return regression.predict(seen, BEGINNING_S)
+    relative = replace(windows, records=[_with_wind_off_the_bow(record) for record in windows.records])
+    return regression.predict(relative, BEGINNING_S)
 
 
 def _with_wind_off_the_bow(record: Record) -> Record:

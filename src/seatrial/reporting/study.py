@@ -89,11 +89,11 @@ def _claims(study: Study) -> TextTable:
 def _checks(study: Study) -> Section:
     """Return the checks that fail, and folded the others."""
     failed = [check for check in study.checks if check.status is CheckStatus.FAILS]
-    others = [check for check in study.checks if check.status is not CheckStatus.FAILS]
+    passed = [check for check in study.checks if check.status is not CheckStatus.FAILS]
     if not failed:
-        return Section("Checks", "checks", table=_check_table(others), is_folded=True)
-    more = Section("Checks that hold or are withdrawn", table=_check_table(others), is_folded=True)
-    return Section("Checks", "checks", table=_check_table(failed), parts=(more,) if others else ())
+        return Section("Checks", "checks", table=_check_table(passed), is_folded=True)
+    more = Section("Checks that hold or are withdrawn", table=_check_table(passed), is_folded=True)
+    return Section("Checks", "checks", table=_check_table(failed), parts=(more,) if passed else ())
 
 
 def _check_table(checks: Sequence[Check]) -> TextTable:

@@ -329,8 +329,8 @@ class Performance:
         """Return the peak of |S| of the parabola through three samples of 1 + L, and its slopes (g,)."""
         u = _closest_to_zero(near)
         weights = np.array([0.5 * u * (u - 1.0), 1.0 - u**2, 0.5 * u * (u + 1.0)])
-        at = weights @ near
-        return 1.0 / abs(at), -np.real(np.conj(at) * (terms @ weights)) / np.abs(at) ** 3
+        at = complex(weights @ near)
+        return 1.0 / abs(at), -np.real(at.conjugate() * (terms @ weights)) / abs(at) ** 3
 
     @property
     def uncontrolled_variances(self) -> Array:

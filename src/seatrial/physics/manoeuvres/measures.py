@@ -265,7 +265,7 @@ def _zigzag_measures(manoeuvre: ObservedManoeuvre, length: float, switching: flo
             made["initial_turning_L"] = travelled / length
     for k, (start, stop) in enumerate(pairwise([*times[1:], float(manoeuvre.record.time[-1])]), start=1):
         side = float(np.sign(manoeuvre.holds[k - 1].angle))
-        made |= _largest_heel(manoeuvre.record, side, start, stop, f"heel_{k}_deg")
+        made.update(_largest_heel(manoeuvre.record, side, start, stop, f"heel_{k}_deg"))
     periods = [peaks[k + 2][0] - at for k, (at, _) in peaks.items() if k + 2 in peaks]
     if periods:
         made["period_s"] = float(np.mean(periods))

@@ -336,10 +336,16 @@ def mmg_roll() -> Model:
     inertia = _roll_inertia(sheet, motion, masses)
     X_m, Y_m, N_m = _with_centripetal(sheet, motion, masses, X, Y, N)
     z_H, z_R = (
-        sheet.parameter(f"{name}_prime", 0.0, meaning=f"depth of the {what} below G over L", free=is_free, scale=0.01,
-                        latex=f"z'_{name[2]}")
-        for name, what, is_free in (("z_H", "hull's side force", True), ("z_R", "rudder's side force", False))
-    )  # fmt: skip
+        sheet.parameter(
+            f"{name}_prime",
+            0.0,
+            meaning=f"depth of the {force} below G over L",
+            free=is_free,
+            scale=0.01,  # a hundredth of the length; chosen
+            latex=f"z'_{name[2]}",
+        )
+        for name, force, is_free in (("z_H", "hull's side force", True), ("z_R", "rudder's side force", False))
+    )
     unit = motion.q * motion.L * motion.U**2
     static = roll_moment(sheet, ship, inertia.M_p, masses.m, unit)
     levers = motion.L * (z_H * (Y_H + Y_F) + z_R * Y_R)

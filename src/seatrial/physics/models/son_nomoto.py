@@ -124,7 +124,7 @@ def _normal_force(sheet: Sheet, flow: _Flow, propeller: _Propeller, sine: sp.Sym
     v_p, r_p = flow.v_p, flow.r_p
     side = gamma * v_p + c_r * r_p + c_rrr * r_p**3 + c_rrv * r_p**2 * v_p
     v_R = sheet.bind("v_R", flow.U * side, f"{SON_NOMOTO}, v_R'", "m/s")
-    slipstream = propeller.u_P**2 + 8 / sp.pi * kappa * propeller.head
+    slipstream = propeller.u_P**2 + 8 / sp.pi * kappa * propeller.head  # 8 / pi: momentum theory, as printed
     z = sheet.bind("z", slipstream, f"{SON_NOMOTO}, u_R, square of the slipstream", "m^2/s^2")
     ahead = sp.Piecewise((z, z > 0), (sp.Integer(0), True))
     u_R = sheet.bind("u_R", epsilon * sp.sqrt(ahead + flow.U_0**2), f"{SON_NOMOTO}, u_R'", "m/s")
