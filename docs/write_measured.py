@@ -20,8 +20,8 @@ orphan: true
 # Longer runs
 
 Tables of commands that take longer than `make bench`, on a machine with two cores (AMD EPYC). The shorter ones, with
-machine, date and commit, are on the page of [numbers](numbers.md). Under a table stands the day on which its command was
-run at this version; those without a day are of version 0.1 and were not run again.
+machine, date and commit, are on the page of [numbers](numbers.md). Under a table stands the day on which its command
+was run at this version; those without a day are of version 0.1 and were not run again.
 """
 
 
