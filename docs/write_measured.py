@@ -20,7 +20,8 @@ orphan: true
 # Longer runs
 
 Tables of commands that take longer than `make bench`, on a machine with two cores (AMD EPYC). The shorter ones, with
-machine, date and commit, are on the page of [numbers](numbers.md).
+machine, date and commit, are on the page of [numbers](numbers.md). Under a table stands the day on which its command
+was run at this version; those without a day are of version 0.1 and were not run again.
 """
 
 
@@ -34,7 +35,8 @@ def _section(table: Mapping[str, Any]) -> str:
     commands = "".join(f"    {command}\n" for command in table["commands"])
     note = f"\n{table['note'].strip()}\n" if "note" in table else ""
     rows = f"\n{_rows(table)}" if "rows" in table else ""
-    return f"\n## {table['title']}\n\n{commands}{note}{rows}"
+    day = f"\nRun on {table['run']}.\n" if "run" in table else ""
+    return f"\n## {table['title']}\n\n{commands}{note}{rows}{day}"
 
 
 def _rows(table: Mapping[str, Any]) -> str:

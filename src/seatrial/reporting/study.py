@@ -87,13 +87,13 @@ def _claims(study: Study) -> TextTable:
 
 
 def _checks(study: Study) -> Section:
-    """Return the checks that fail, and folded the others."""
-    failed = [check for check in study.checks if check.status is CheckStatus.FAILS]
-    passed = [check for check in study.checks if check.status is not CheckStatus.FAILS]
-    if not failed:
-        return Section("Checks", "checks", table=_check_table(passed), is_folded=True)
-    more = Section("Checks that hold or are withdrawn", table=_check_table(passed), is_folded=True)
-    return Section("Checks", "checks", table=_check_table(failed), parts=(more,) if passed else ())
+    """Return the checks that fail, and folded those that hold or are withdrawn."""
+    failures = [check for check in study.checks if check.status is CheckStatus.FAILS]
+    table = _check_table([check for check in study.checks if check.status is not CheckStatus.FAILS])
+    if not failures:
+        return Section("Checks", "checks", table=table, is_folded=True)
+    folded = Section("Checks that hold or are withdrawn", table=table, is_folded=True)
+    return Section("Checks", "checks", table=_check_table(failures), parts=(folded,))
 
 
 def _check_table(checks: Sequence[Check]) -> TextTable:
