@@ -7,7 +7,7 @@ import pytest
 from tests.data.read.samples import HEADING, SAMPLES, SPEED, TIME
 
 from seatrial.core.values import InputError
-from seatrial.data.trial import Role, Trial, load_runs, load_trial
+from seatrial.data.trial import Role, RunFiles, Trial, load_runs, load_trial
 
 HEAD = """
 [ship]
@@ -157,3 +157,11 @@ def test_runs_are_read_without_ship_and_model(tmp_path: Path) -> None:
     path.write_text(TWO.replace("speed.csv", "none.csv"), encoding="utf-8")
     with pytest.raises(InputError, match=r"trial.toml: records\[1\].sources\[1\].files: there is no file"):
         load_runs(path)
+
+
+@pytest.mark.parametrize(("line", "is_stated"), [("antenna = { x = 0.0, y = 0.0 }", True), ("", False)])
+def test_an_antenna_at_midship_is_stated_where_the_trial_says_so(tmp_path: Path, line: str, *, is_stated: bool) -> None:
+    (tmp_path / "trial.toml").write_text(HEAD + BIN.replace("[[records]]", f"[[records]]\n{line}"))
+    (tmp_path / "run.bin").write_bytes(b"")
+    (run,) = load_trial(tmp_path / "trial.toml").runs
+    assert isinstance(run.data, RunFiles) and run.data.states_antenna is is_stated

@@ -12,10 +12,11 @@ from seatrial.core.results import Fit
 from seatrial.core.values import Record
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.estimation.estimate import Estimation, Runs, estimate_model
-from seatrial.estimation.identify import identify
+from seatrial.estimation.identify import identify, instruments
 from seatrial.estimation.identify.instruments import instrument_errors, with_undetected_sensor_errors
 from seatrial.estimation.identify.score_test import output_error_estimate, own_criterion
 from seatrial.physics.models.nomoto import nomoto
+from seatrial.physics.sensors import Sensors
 
 BOAT = CRAFTS["Nomoto boat"]
 GAIN = 0.14
@@ -104,6 +105,16 @@ def test_what_a_pair_leaves_open_is_in_the_intervals() -> None:
     assert np.all(
         np.abs(moved) <= np.sqrt(widened.interval.standard_error**2 - estimation.interval.standard_error**2)[:2]
     )
+
+
+@pytest.mark.parametrize(("length", "names"), [(2.0, {"x_antenna", "y_antenna"}), (None, set[str]())])
+def test_an_antenna_whose_place_is_stated_is_no_suspect(length: float | None, names: set[str]) -> None:
+    """A model that is not the craft's would have it elsewhere; whoever measured it knows better."""
+    track = {channel: np.linspace(0.0, 1.0, 20) for channel in ("x0", "y0", "psi")}
+    record = Record.from_arrays("run", np.arange(20.0), track)
+    motion, timing = instruments._Motion(track, track), instruments._Timing((record,), {}, is_known=True)
+    suspects = instruments._of_receiver(motion, timing, Sensors(), length)
+    assert {e.name for suspect in suspects for e in suspect.errors} - {"lag_receiver"} == names
 
 
 @pytest.mark.long

@@ -176,12 +176,14 @@ class Geometry:
         origin: latitude and longitude [rad] of the plane on which x0 and y0 lie; None: the first fix.
         variation: magnetic variation [rad], positive to the east; None: it is not stated.
         antenna_x, antenna_y: m forward of midship and to starboard of the centre line: where the GNSS antenna is.
+        is_antenna_stated: whether somebody said so; else it is taken to be there.
     """
 
     origin: tuple[float, float] | None = None
     variation: float | None = None
     antenna_x: float = 0.0
     antenna_y: float = 0.0
+    is_antenna_stated: bool = False
 
 
 @dataclass(frozen=True)

@@ -58,6 +58,11 @@ class RunFiles:
         """Return a single file, named without its ending."""
         return cls(run_name(path), (SourceFile(path, layout),))
 
+    @property
+    def states_antenna(self) -> bool:
+        """Whether the place of the antenna is stated."""
+        return any(source.layout.geometry.is_antenna_stated for source in self.files)
+
     def read(self, read: "LogReader | None" = None) -> Record:
         """Read and join the files, named as the run.
 

@@ -20,6 +20,7 @@ from seatrial.data.read import ColumnSpec, Layout, format_of
 from seatrial.data.read.layout import LOG_QUANTITIES, Geometry, TimeSpec, log_quantity
 from seatrial.data.trial.run_data import RunFiles, SourceFile, run_name, session_of
 from seatrial.data.trial.schema import (
+    AntennaTable,
     ChannelColumn,
     ColumnsTable,
     DeclaredChannel,
@@ -254,11 +255,12 @@ def _sources_of(block: RecordsTable, data_folder: Path, where: str, declared: De
 def _joined(layout: Layout, block: RecordsTable, clock_offset: float = 0.0) -> Layout:
     """The layout with what the whole block says: scale, geometry, rate, offset of the clock [s]."""
     origin = None if block.origin is None else (block.origin.lat, block.origin.lon)
+    antenna = block.antenna or AntennaTable()  # midship, where nobody says
     return replace(
         layout,
         time=replace(layout.time, clock_offset=block.clock_offset + clock_offset),
         scale=block.scale,
-        geometry=Geometry(origin, block.variation, block.antenna.x, block.antenna.y),
+        geometry=Geometry(origin, block.variation, antenna.x, antenna.y, block.antenna is not None),
         rate=block.rate,
     )
 

@@ -274,7 +274,7 @@ class RecordsTable(ColumnsTable):
     clock_offset: float = 0.0
     origin: OriginTable | None = None
     variation: Angle | None = None
-    antenna: AntennaTable = AntennaTable()
+    antenna: AntennaTable | None = None
     format: Format | None = None
     scale: Annotated[float, Field(gt=0)] = 1.0
     source: str = ""

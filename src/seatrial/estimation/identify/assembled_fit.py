@@ -207,7 +207,7 @@ def _instrument_errors(task: Identification, estimation: Estimation) -> ErrorInf
     estimate = own_criterion(estimation)
     if estimate is task.beginning.shooting:
         return task.instrument_errors
-    return instrument_errors(estimate, task.runs.records, task.runs.length, task.settings.delays)
+    return instrument_errors(estimate, task.runs.records, task.antenna_length, task.settings.delays)
 
 
 def _with_sampling(task: Identification, selected: SelectedModel) -> tuple[SelectedModel, Posterior | None]:

@@ -14,7 +14,7 @@ from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Finding, InputError, Parameters, ProgressReporter, Record, Severity
 from seatrial.core.values.arrays import BETWEEN, Between
 from seatrial.data.check.phases import is_free_decay
-from seatrial.data.trial import EstimateSettings, Role, Trial, TrialRecord
+from seatrial.data.trial import EstimateSettings, Role, RunFiles, Trial, TrialRecord
 from seatrial.estimation.estimate import (
     Beginning,
     Estimation,
@@ -184,7 +184,13 @@ class Identification:
     def instrument_errors(self) -> ErrorInformation | None:
         """What output error over segments says of errors of instruments that the model does not have; None: of none."""
         estimate = self.beginning.shooting
-        return instrument_errors(estimate, self.runs.records, self.runs.length, self.settings.delays)
+        return instrument_errors(estimate, self.runs.records, self.antenna_length, self.settings.delays)
+
+    @property
+    def antenna_length(self) -> float | None:
+        """Length [m] of the ship along which an antenna may stand; None: the trial states where it stands."""
+        is_stated = any(isinstance(run.data, RunFiles) and run.data.states_antenna for run in self.trial.runs)
+        return None if is_stated else self.runs.length
 
     @cached_property
     def beginning(self) -> Beginning:

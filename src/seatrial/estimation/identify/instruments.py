@@ -178,6 +178,7 @@ _LEAST_LEVER = 0.05  # of the ship's length, as in `antenna_place`: less is what
 _LEAST_LAG = 0.2  # s: below, a model that is not the craft's may well ask for it; chosen
 _LAG = 1.0  # s, that of a lag where it is sought; chosen: filters of receivers and compasses
 _ANY_PLACE = 3.0**-0.5  # standard deviation of a place that is uniform from -1 to 1
+_MOST = 4.0  # deviations up to which it is an instrument's error; beyond, it is what the model misses; chosen
 _LIKELIER = 25.0  # twice the gain of likelihood from which an error is sought, five standard errors; chosen
 _ERROR_STEP = 0.1  # of such an error's deviation, of differences by it: a filter follows what it is shown; chosen
 _ERROR_EVALUATIONS = 12  # of a short search beside such errors; chosen
@@ -236,7 +237,7 @@ class Suspect:
 
     def matters(self, sizes: Mapping[str, float], spread: Mapping[str, float]) -> bool:
         """Whether errors of these sizes and standard errors are possible, and one certainly is not negligible."""
-        return all(sizes[e.name] >= e.least for e in self.errors) and any(
+        return all(sizes[e.name] >= e.least and abs(sizes[e.name]) <= _MOST * e.deviation for e in self.errors) and any(
             abs(sizes[e.name]) - _CERTAIN * spread[e.name] > e.negligible for e in self.errors
         )
 
@@ -316,8 +317,8 @@ class _Timing:
         )  # fmt: skip
 
 
-def _of_receiver(motion: _Motion, timing: _Timing, stated: Sensors, length: float) -> Iterator[Suspect]:
-    """Errors of a receiver whose track is read beside a compass."""
+def _of_receiver(motion: _Motion, timing: _Timing, stated: Sensors, length: float | None) -> Iterator[Suspect]:
+    """Errors of a receiver whose track is read beside a compass; length: as of `instrument_errors`."""
     psi, zero = motion.channels["psi"], np.zeros(len(motion.channels["psi"]))
     lag = {c: -motion.rates[c] for c in ("x0", "y0")}
     x = {"x0": np.cos(psi), "y0": np.sin(psi)}
@@ -328,6 +329,8 @@ def _of_receiver(motion: _Motion, timing: _Timing, stated: Sensors, length: floa
         lag |= {"u": r * v - motion.rates["u"], "v": -r * u - motion.rates["v"]}
         x, y = x | {"u": zero, "v": r}, y | {"u": -r, "v": zero}
     yield timing.late(Late.RECEIVER, lag, -np.inf)
+    if length is None:
+        return
     aboard = float(f"{length / UNIFORM:.2g}")  # m: an antenna stands anywhere along the ship
     yield Suspect(
         "the antenna stands elsewhere",
@@ -393,7 +396,7 @@ class ErrorInformation:
 
 
 def instrument_errors(
-    estimate: PointEstimate | ProcessNoise, records: Sequence[Record], length: float,
+    estimate: PointEstimate | ProcessNoise, records: Sequence[Record], length: float | None,
     delays: Mapping[str, float | None],
 ) -> ErrorInformation | None:  # fmt: skip
     """Return what the records say of errors that the estimate's model does not have; None: of none.
@@ -402,7 +405,7 @@ def instrument_errors(
     left in would pass for a slow disturbance, against which it is nothing.
 
     Args:
-        length: of the ship [m], aboard of which an antenna stands.
+        length: of the ship [m], aboard of which an antenna stands; None: the trial states where.
         delays: channel -> standard deviation of its lag [s], 0: its timing is known; of others by their source.
     """
     runs = estimate.output_error if isinstance(estimate, ProcessNoise) else estimate.problem

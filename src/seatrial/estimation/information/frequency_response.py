@@ -142,7 +142,7 @@ def power_density(values: Array, length: int, dt: float) -> tuple[Array, Array]:
     length: samples of a segment, at most those of the columns; dt: s. Source: Welch 1967, IEEE Trans. AU-15, 70-73.
     """
     power = np.mean([np.abs(f) ** 2 for f in _transforms(values, length)], axis=0)
-    omega = 2.0 * np.pi * np.fft.rfftfreq(length, dt)
+    omega = np.asarray(2.0 * np.pi * np.fft.rfftfreq(length, dt), dtype=np.float64)
     is_twice = (omega > 0.0) & (np.arange(len(omega)) < (length + 1) // 2)  # neither the mean nor Nyquist's frequency
     return omega, np.where(is_twice, 2.0, 1.0)[:, None] * dt / (2.0 * np.pi) * power
 

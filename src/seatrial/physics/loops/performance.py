@@ -117,6 +117,7 @@ def _log_frequencies(loop: TransferLoop) -> Array:
     """Logarithms of frequencies over the band and all closed poles: a weak loop that integrates crosses one early."""
     low, high = frequency_band(loop)
     poles = np.abs(loop.closed_loop_poles)
+    poles = poles[poles > 0.0]  # an integrator whose gain is 0 stays at rest
     highest = math.inf if loop.sampling is None else loop.sampling.highest
     first, last = min(low, _BELOW * poles.min()), min(max(high, _ABOVE * poles.max()), highest)
     return np.linspace(math.log(first), math.log(last), _SAMPLES)
