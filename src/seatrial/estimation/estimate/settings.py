@@ -124,7 +124,7 @@ def resolved_time(
         InputError: as `characteristic_time`.
     """
     own = characteristic_time(model, records, length, segment_seconds)
-    return max(own, SAMPLES_OF_CHANGE * _slowest_step(model, records)) if model.has_course else own
+    return max(own, SAMPLES_OF_CHANGE * _slowest_step(model, records)) if model.has_course and own > 0.0 else own
 
 
 def _slowest_step(model: Model, records: Sequence[Record]) -> float:
