@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import least_squares
 
+from seatrial.core.results.coefficients import two_sided_quantile
 from seatrial.core.values import Array, InputError, Record
 from seatrial.core.values.notation import channel_meaning, display_unit
+from seatrial.estimation.information.whiteness import autocorrelation, variance_inflation
 
 ORDER_SUFFIX = "_ref"
 """Ending of the channel of an actuator's order: ``delta_ref`` of ``delta``."""
@@ -20,7 +22,7 @@ _LEAST_LAG, _LARGEST_DEAD_TIME = 1e-3, 30.0  # s, bounds of the search; chosen
 _DIFFERENCE = 1e-3  # of an unknown, of the slopes of residuals that interpolate the order; chosen
 _SHOWN = 0.02  # share of samples at the largest rate from which on the log shows one; chosen
 _MOVES = 20.0  # range of the order over the scatter of what is explained, from which on it moves; chosen
-_MIDDLE_95 = 1.959964  # standard deviations of a normal 95 % interval
+_LEVEL = 0.95  # of the intervals, as everywhere
 _EDGE = 1e-9  # share of the largest rate within which it is reached: rounding
 
 
@@ -73,7 +75,7 @@ def simulated_angles(time: Array, order: Array, first: float, rate: float, dead_
 def actuator_response(records: Sequence[Record], actuator: str) -> ActuatorResponse:
     """Return the response of least squares over records with an actuator's angle and its order.
 
-    Intervals are those of independent samples, widened by the correlation of the residuals (Bartlett 1946); that of the
+    Intervals are those of independent samples, widened by the correlation of the residuals (Sokal 1997); that of the
     dead time by half a sample, too, as the order may change at any moment between two.
 
     Raises:
@@ -109,9 +111,14 @@ def actuator_response(records: Sequence[Record], actuator: str) -> ActuatorRespo
     is_reached = _share_at_rate(runs, rate, solution.x[1], lag) >= _SHOWN
     places = np.arange(3) if is_reached else np.array([1, 2])
     slopes = np.asarray(solution.jac, dtype=np.float64)[:, places]
-    covariance = np.linalg.pinv(slopes.T @ slopes) * scatter**2 * _inflation(solution.fun)
+    inflation = variance_inflation(autocorrelation([solution.fun], len(solution.fun) - 1))
+    covariance = np.linalg.pinv(slopes.T @ slopes) * scatter**2 * inflation
     half_sample = 0.5 * max(float(np.median(np.diff(time))) for time, _, _ in runs)
-    errors = dict(zip(places.tolist(), (_MIDDLE_95 * np.sqrt(np.diag(covariance))).tolist(), strict=True))
+    errors = dict(
+        zip(
+            places.tolist(), (two_sided_quantile(_LEVEL, math.inf) * np.sqrt(np.diag(covariance))).tolist(), strict=True
+        )
+    )
     return ActuatorResponse(
         rate if is_reached else math.nan, rate * errors.get(0, math.nan), float(solution.x[1]),
         math.hypot(errors[1], half_sample), lag, lag * errors[2], scatter,
@@ -126,15 +133,6 @@ def _share_at_rate(runs: list[tuple[Array, Array, Array]], rate: float, dead_tim
         for time, order, angle in runs
     ]
     return float(np.mean(np.concatenate(at_rate)))
-
-
-def _inflation(residuals: Array) -> float:
-    """Return the sum of the residuals' correlation up to its first zero: what a variance grows by (Bartlett 1946)."""
-    spectrum = np.abs(np.fft.rfft(residuals - residuals.mean(), 2 * len(residuals))) ** 2
-    correlation = np.fft.irfft(spectrum)[: len(residuals)]
-    correlation = correlation / max(float(correlation[0]), np.finfo(float).tiny)
-    negative = np.flatnonzero(correlation <= 0.0)
-    return float(1.0 + 2.0 * np.sum(correlation[1 : negative[0] if negative.size else len(residuals)]))
 
 
 def logged_records(path: Path) -> list[Record]:

@@ -16,7 +16,7 @@ from seatrial.physics.models.published import SON_NOMOTO, container_ship, kvlcc2
 from seatrial.physics.simulate.replay import replay
 from seatrial.physics.simulate.steer import manoeuvre
 from seatrial.problems.problem import BenchmarkProblem, Placement, ProblemDraw
-from seatrial.problems.trial_problem import KnownCraft, craft_draw, off_centre_box, scaled_values
+from seatrial.problems.trial_problem import KnownCraft, craft_draw, free_values, off_centre_box, placed_model
 
 # half range of the factor by which a draw scales the true coefficients, and half width of their box, 1; chosen
 _SCALE, _HALF_WIDTH = 0.1, 0.5
@@ -162,14 +162,10 @@ def problems() -> tuple[BenchmarkProblem, ...]:
 
 def _draw(rng: np.random.Generator, placement: Placement) -> ProblemDraw:
     ship = rolling_container_ship()
-    model, names = ship.model, ship.model.parameters.free_names
-    truth = np.array([model.parameters[name].value for name in names])
-    if placement is Placement.SHIFTED:
-        truth = scaled_values(truth, _SCALE, rng)
-        model = model.with_values(dict(zip(names, truth.tolist(), strict=True)))
+    model = placed_model(ship.model, placement, _SCALE, rng)
     clean = ship.runs(model)
     starts = [{name: float(run[name][0]) for name in model.states} for run in clean]
     records = [ship.noisy(run, rng) for run in clean]
-    box = off_centre_box(truth, _HALF_WIDTH, rng)
+    box = off_centre_box(free_values(model), _HALF_WIDTH, rng)
     craft = KnownCraft(s175().ship, model, records, ship.noise, starts, SETTINGS)
     return craft_draw(craft, box, 0.5 * (box.lower + box.upper))

@@ -34,7 +34,7 @@ from seatrial.physics.simulate.replay import replay
 from seatrial.problems import rolling_ship
 from seatrial.problems.problem import BenchmarkProblem, Placement, ProblemDraw
 from seatrial.problems.rolling_ship import rolling_container_ship
-from seatrial.problems.trial_problem import KnownCraft, craft_draw, off_centre_box, scaled_values
+from seatrial.problems.trial_problem import KnownCraft, craft_draw, free_values, off_centre_box, placed_model
 
 OUTPUTS = ("u", "v", "p", "r", "phi")
 INPUTS = ("n", "delta", "wind_speed", "wind_direction")
@@ -264,16 +264,11 @@ def problems() -> tuple[BenchmarkProblem, ...]:
 
 
 def _draw(rng: np.random.Generator, placement: Placement) -> ProblemDraw:
-    model = ship_in_wind()
-    names = model.parameters.free_names
-    truth = np.array([model.parameters[name].value for name in names])
-    if placement is Placement.SHIFTED:
-        truth = scaled_values(truth, _SCALE, rng)
-        model = model.with_values(dict(zip(names, truth.tolist(), strict=True)))
+    model = placed_model(ship_in_wind(), placement, _SCALE, rng)
     records = wind_records(model, rng)
     noise = {name: rolling_container_ship().noise[name] for name in (*OUTPUTS, "psi")}
     starts = [{name: float(run[name][0]) for name in model.states if name in run} for run in records.training]
-    box = off_centre_box(truth, _HALF_WIDTH, rng)
+    box = off_centre_box(free_values(model), _HALF_WIDTH, rng)
     craft = KnownCraft(s175().ship, model, list(records.training), noise, starts, SETTINGS)
     draw = craft_draw(craft, box, 0.5 * (box.lower + box.upper))
     windows = windows_of(records.outside)

@@ -16,7 +16,7 @@ from seatrial.estimation.predict.open_loop import rms_errors
 from seatrial.estimation.predict.window_scores import constant_course
 from seatrial.estimation.problem import OutputError, cut_segments
 from seatrial.numerics.optimise import Box, NormalEquations
-from seatrial.problems.problem import KnownTruth, ProblemDraw
+from seatrial.problems.problem import KnownTruth, Placement, ProblemDraw
 
 # Boxes about a truth, and truths near published values.
 
@@ -42,6 +42,19 @@ def off_centre_box(truth: Array, half_width: float, rng: np.random.Generator) ->
 def scaled_values(published: Array, half_range: float, rng: np.random.Generator) -> Array:
     """Return values each scaled by a factor of its own within 1 +- half_range, (d,)."""
     return published * rng.uniform(1.0 - half_range, 1.0 + half_range, len(published))
+
+
+def placed_model(model: Model, placement: Placement, half_range: float, rng: np.random.Generator) -> Model:
+    """Return the model with its free coefficients as published, or each scaled within 1 +- half_range."""
+    if placement is not Placement.SHIFTED:
+        return model
+    values = scaled_values(free_values(model), half_range, rng)
+    return model.with_values(dict(zip(model.parameters.free_names, values.tolist(), strict=True)))
+
+
+def free_values(model: Model) -> Array:
+    """Return the values of the free coefficients, (d,)."""
+    return np.array([model.parameters[name].value for name in model.parameters.free_names])
 
 
 def standard_errors_within(information: Array, box: Box) -> Array:

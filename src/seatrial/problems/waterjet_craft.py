@@ -5,7 +5,7 @@ import numpy as np
 from seatrial.core.values import Ship
 from seatrial.data.example_series import SENSOR_NOISE, simulate_run, true_model, with_sensor_noise
 from seatrial.problems.problem import BenchmarkProblem, Placement, ProblemDraw
-from seatrial.problems.trial_problem import KnownCraft, craft_draw, off_centre_box, scaled_values
+from seatrial.problems.trial_problem import KnownCraft, craft_draw, free_values, off_centre_box, placed_model
 
 _SOURCE = (
     "Song et al. 2025, Chinese Journal of Ship Research 20(1), 65-75, table 2 (CFD) and figure 4; sensors and records "
@@ -29,15 +29,10 @@ def problems() -> tuple[BenchmarkProblem, ...]:
 
 
 def _draw(rng: np.random.Generator, placement: Placement) -> ProblemDraw:
-    model = true_model()
-    names = model.parameters.free_names
-    truth = np.array([model.parameters[name].value for name in names])
-    if placement is Placement.SHIFTED:
-        truth = scaled_values(truth, _SCALE, rng)
-        model = model.with_values(dict(zip(names, truth.tolist(), strict=True)))
+    model = placed_model(true_model(), placement, _SCALE, rng)
     clean = simulate_run(model, _MANOEUVRE)
     state = {name: float(clean[name][0]) for name in model.states}
     record = with_sensor_noise(clean, rng, 0)
-    box = off_centre_box(truth, _HALF_WIDTH, rng)
+    box = off_centre_box(free_values(model), _HALF_WIDTH, rng)
     craft = KnownCraft(_SHIP, model, [record], SENSOR_NOISE, [state])
     return craft_draw(craft, box, 0.5 * (box.lower + box.upper))

@@ -117,8 +117,9 @@ def characteristic_time(
 def resolved_time(
     model: Model, records: Sequence[Record], length: float, segment_seconds: float | None = None
 ) -> float:
-    """Return the time [s] in which records show how the ship changes its motion: its own, of a steered ship no less
-    than a few samples of the slowest channel.
+    """Return the time [s] in which records show how the ship changes its motion.
+
+    It is the ship's own, of a steered ship no less than a few readings of the slowest channel.
 
     Raises:
         InputError: as `characteristic_time`.
