@@ -17,6 +17,7 @@ from seatrial.estimation.information.whiteness import autocorrelation, variance_
 ORDER_SUFFIX = "_ref"
 """Ending of the channel of an actuator's order: ``delta_ref`` of ``delta``."""
 _RATE_QUANTILE = 0.99  # of the measured rates, from which the search for the largest begins; chosen
+_RATE_SPAN = 3.0  # of the logarithm of the largest rate to either side of that, bounds of the search; chosen
 _DEAD_TIMES, _LAGS = (0.2, 1.0, 3.0), (0.3, 1.0, 3.0)  # s, from which the search begins; chosen
 _LEAST_LAG, _LARGEST_DEAD_TIME = 1e-3, 30.0  # s, bounds of the search; chosen
 _DIFFERENCE = 1e-3  # of an unknown, of the slopes of residuals that interpolate the order; chosen
@@ -98,8 +99,8 @@ def actuator_response(records: Sequence[Record], actuator: str) -> ActuatorRespo
         return np.concatenate([one - np.mean(one) for one in apart])  # an offset of the sensor is no response
 
     bounds = (
-        [math.log(fastest) - 3.0, 0.0, math.log(_LEAST_LAG)],
-        [math.log(fastest) + 3.0, _LARGEST_DEAD_TIME, math.log(_LARGEST_DEAD_TIME)],
+        [math.log(fastest) - _RATE_SPAN, 0.0, math.log(_LEAST_LAG)],
+        [math.log(fastest) + _RATE_SPAN, _LARGEST_DEAD_TIME, math.log(_LARGEST_DEAD_TIME)],
     )
     starts = [np.array([math.log(fastest), dead, math.log(lag)]) for dead, lag in product(_DEAD_TIMES, _LAGS)]
     start = min(starts, key=lambda unknowns: float(np.sum(residuals(unknowns) ** 2)))
@@ -114,11 +115,8 @@ def actuator_response(records: Sequence[Record], actuator: str) -> ActuatorRespo
     inflation = variance_inflation(autocorrelation([solution.fun], len(solution.fun) - 1))
     covariance = np.linalg.pinv(slopes.T @ slopes) * scatter**2 * inflation
     half_sample = 0.5 * max(float(np.median(np.diff(time))) for time, _, _ in runs)
-    errors = dict(
-        zip(
-            places.tolist(), (two_sided_quantile(_LEVEL, math.inf) * np.sqrt(np.diag(covariance))).tolist(), strict=True
-        )
-    )
+    half_widths = two_sided_quantile(_LEVEL, math.inf) * np.sqrt(np.diag(covariance))
+    errors = dict(zip(places.tolist(), half_widths.tolist(), strict=True))
     return ActuatorResponse(
         rate if is_reached else math.nan, rate * errors.get(0, math.nan), float(solution.x[1]),
         math.hypot(errors[1], half_sample), lag, lag * errors[2], scatter,
