@@ -28,7 +28,7 @@ from seatrial.core.values import Array
 from seatrial.physics.loops import delay_margin
 from seatrial.physics.loops.objective import ENERGY
 
-# The choice of a stabiliser: candidates along the fronts and with more margin, all through the same seas.
+# The choice of a stabiliser: optima at rates of the actuator and with more margin, all through the same seas.
 
 CANDIDATE_COUNT = 16  # rates of the actuator at which gains are tried; chosen
 MAX_SATURATION_LOSS = 0.03  # reduction lost to the actuator's limits, as a share of one; chosen
@@ -106,9 +106,9 @@ def choose_by_simulation(
         report_progress(f"choice of gains: {front.name}, {len(safer)} with more margin simulated")
     best = _best_candidate(tried)
     reasons = (
-        f"Of {len(tried)} controllers along the fronts none surely reduces the motion more within the limits, "
-        f"with and without stall: mean {100.0 * best.reduction:.1f} % on {_SELECTION_SEEDS} realisations kept for the "
-        "choice. Of equals it has the most margin. The law of stall is assumed.",
+        f"Of {len(tried)} controllers, least motion at rates of the actuator, none surely reduces the motion more "
+        f"within the limits, with and without stall: mean {100.0 * best.reduction:.1f} % on {_SELECTION_SEEDS} "
+        "realisations kept for the choice. Of equals it has the most margin. The law of stall is assumed.",
         f"It loses {100.0 * best.saturation_loss:.1f} points of reduction to angle and rate limits there; a loss of "
         f"{100.0 * MAX_SATURATION_LOSS:.0f} points or more is not recommended.",
     )
@@ -322,9 +322,9 @@ def _choose_by_demand(
     best = _compromise(task, keeping)
     in_time = f", settled within {demand.settling:.3g} s" if math.isfinite(demand.settling) else ""
     why = (
-        f"{len(keeping)} of {len(tried)} controllers along the fronts follow the demand in the nonlinear model, with "
-        f"no more than {100.0 * demand.overshoot:.3g} % of overshoot{in_time}, and keep every ship stable that the fit "
-        "allows.",
+        f"{len(keeping)} of {len(tried)} controllers, least motion at rates of the actuator, follow the demand in the "
+        f"nonlinear model, with no more than {100.0 * demand.overshoot:.3g} % of overshoot{in_time}, and keep every "
+        "ship stable that the fit allows.",
         _compromise_reason(task, "those"),
     )
     return GainChoice(best.evaluator, best.gains, best.front_name, why)
