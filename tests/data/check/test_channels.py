@@ -1,5 +1,7 @@
 """Positions of few digits come in steps; a sensor that stopped does not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.data.check.ship import with_values, zigzag
@@ -43,6 +45,20 @@ def digits(values: Array) -> Array:
 
 def whole_degrees(values: Array) -> Array:
     return np.radians(np.round(np.degrees(values)))
+
+
+def test_a_speed_and_a_course_that_both_stay_are_a_steady_ship() -> None:
+    """Velocity north and east of a speed to 0.1 kn and a course to 1 deg: a pair that stays has no resolution of its
+    own, speed and course have."""
+    record = zigzag(noise=1.0)
+    speed = np.round(6.0 + 0.2 * np.sin(np.arange(len(record)) / 300.0), 1)
+    course = np.radians(np.round(290.0 + np.maximum(np.arange(len(record)) - 500, 0) / 80.0))
+    over_ground = {
+        symbol: replace(record.channel(symbol), values=values, frame="earth")
+        for symbol, values in (("u", speed * np.cos(course)), ("v", speed * np.sin(course)))
+    }
+    findings = channel_findings(replace(record, channels={**record.channels, **over_ground}))
+    assert {f.code for f in findings if "'u'" in f.message or "'v'" in f.message} == {"resolution"}
 
 
 @pytest.mark.parametrize("symbols", [("psi", "delta"), ("x0", "y0", "psi", "u", "v", "r", "delta")])

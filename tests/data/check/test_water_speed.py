@@ -39,6 +39,30 @@ def test_one_course_does_not(rng: np.random.Generator) -> None:
     assert speed_through_water([straight[0].without("psi")]) is None
 
 
+def test_circles_that_take_half_the_speed_show_that_of_the_approach(rng: np.random.Generator) -> None:
+    """With u^2 = U^2 - c r^2, of a straight course and two hard circles; linear in r^2 it would be 0.4 m/s more."""
+    time, speed, current = DT * np.arange(800), 6.0, (0.3, 0.15)
+    records = []
+    for side in (-1.0, 1.0):
+        rate = side * np.clip((time - 60.0) / 40.0, 0.0, 1.0) * 0.04
+        psi = 1.9 + DT * np.cumsum(rate)
+        u, v = np.sqrt(speed**2 - 1.6e4 * rate**2), -10.0 * rate
+        ways = {
+            "x0": u * np.cos(psi) - v * np.sin(psi) + current[0], "y0": u * np.sin(psi) + v * np.cos(psi) + current[1],
+        }  # fmt: skip
+        track = {name: DT * np.cumsum(way) + 0.3 * rng.standard_normal(len(time)) for name, way in ways.items()}
+        records.append(Record.from_arrays(f"circle {side:g}", time, {"psi": psi, **track}))
+    shown = speed_through_water(records)
+    assert shown is not None and shown.is_separate and shown.has_current
+    assert shown.speed == pytest.approx(speed, abs=max(0.1, 3.0 * shown.speed_error))
+    assert (shown.north, shown.east) == pytest.approx(current, abs=0.03)
+
+
+def test_a_wide_zigzag_on_one_course_separates_no_current(rng: np.random.Generator) -> None:
+    shown = speed_through_water([craft(0.5, 0.09, (0.4, 1.2), rng).between(0.0, 90.0)])
+    assert shown is not None and np.degrees(shown.courses) > 80.0 and not shown.is_separate
+
+
 def test_currents_of_two_outings_disagree(rng: np.random.Generator) -> None:
     ebb, flood = (speed_through_water([craft(0.5, 0.06, (one, 0.0), rng)]) for one in (-0.8, 0.8))
     assert ebb is not None and flood is not None

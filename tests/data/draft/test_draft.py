@@ -231,6 +231,21 @@ def test_columns_without_names_are_recognised_by_what_they_do(tmp_path: Path) ->
     assert recognised_columns({}, STEP) == []
 
 
+def test_columns_whose_names_say_nothing_are_known_by_the_heading(tmp_path: Path) -> None:
+    """The derivative of the heading is its rate; what the yaw acceleration follows stays open; noise is neither."""
+    noise = np.random.default_rng(3).standard_normal(TRUTH["t"].size)
+    columns = {"time": TRUTH["t"], "heading_deg": TRUTH["psi"] / DEGREE, "q7": noise}
+    write(tmp_path / "a.csv", {**columns, "q1": TRUTH["r"] / DEGREE, "q2": -TRUTH["delta"] / DEGREE})
+    draft = draft_trial(tmp_path / "a.csv")
+    used = {g.symbol: g for part in draft.guesses for g in part if g.is_used}
+    assert (used["r"].source, used["r"].unit, used["r"].is_open) == ("q1", "deg/s", False)
+    assert (used["delta"].source, used["delta"].positive, used["delta"].is_open) == ("q2", "port", True)
+    assert draft.unrecognised == ("q7",)
+    write(tmp_path / "b.csv", {**columns, "q2": noise, "rudder_deg": -TRUTH["delta"] / DEGREE})
+    named = {g.symbol: g.source for part in draft_trial(tmp_path / "b.csv").guesses for g in part if g.is_used}
+    assert named == {"psi": "heading_deg", "delta": "rudder_deg"}
+
+
 def test_a_clock_in_local_time_is_moved_to_that_of_the_other_sources(tmp_path: Path) -> None:
     write(tmp_path / "gnss.csv", {key: BASE[key] for key in ("time", "north", "east")})
     write(tmp_path / "gyro.csv", {"time": TRUTH["t"], "rot_deg_s": TRUTH["r"] / DEGREE})

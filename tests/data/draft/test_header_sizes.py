@@ -58,6 +58,9 @@ def test_sentences_above_a_table_say_sides_and_places(tmp_path: Path) -> None:
     assert (said["zeta"].place, said["antenna"].place, said["z"].place) == (1.95, -34.0, None)
     assert [one.option for one in sizes_in_header(log(tmp_path / "b.txt", PROSE), UNSTATED)] == ["--antenna -34"]
     assert header_statements(log(tmp_path / "c.txt", "# positive results, 3 m ahead")) == {}
+    spaced = "# V = 1.2 m/s   wave probe 1.20 m fwd of midship   heave positive down, pitch bow up positive"
+    apart = header_statements(log(tmp_path / "s.txt", f"# tank 2\n{spaced}"))
+    assert (apart["zeta"].place, apart["z"].positive, apart["theta"].positive) == (1.2, "down", "bow up")
     carried = header_statements(log(tmp_path / "d.txt", "# tank 2\n# probe on carriage, 1.900 m fwd of midship"))
     assert carried["zeta"].place == 1.9
 

@@ -104,3 +104,19 @@ def test_rates_of_thrusters_whose_commands_are_recorded_are_not_two_more_thruste
     write(tmp_path / "usv.csv", columns)
     found = {one.symbol: one for one in guess_columns(survey_log(tmp_path / "usv.csv")) if one.is_used}
     assert {"command_1", "command_2"} <= set(found) and not {"rpm_1", "rpm_2", "n"} & set(found)
+
+
+def test_the_engine_of_an_outboard_drives_the_thruster_that_turns() -> None:
+    """Its gear is in the coefficients; a nozzle is taken so where the rate is not one in all runs."""
+    engine = ColumnGuess("engine_rpm", "n", "rpm", evidence=("by its name",), is_used=False, unused_because="a gear")
+    angle = ColumnGuess("outboard_angle", "delta", "deg", positive="port")
+    ((turned, drive),) = with_turned_thruster([(angle, engine)])
+    assert (turned.symbol, drive.symbol, drive.is_used, drive.unused_because) == ("alpha_1", "rpm_1", True, "")
+    nozzle = replace(angle, source="nozzle deg")
+    assert with_turned_thruster([(nozzle, engine)]) == ((nozzle, engine),)
+    ((turned, _),) = with_turned_thruster([(nozzle, engine)], is_rate_steady=False)
+    assert turned.symbol == "alpha_1"
+    steering = replace(angle, source="steering angle")
+    assert with_turned_thruster([(steering, engine)], is_rate_steady=False) == ((steering, engine),)
+    lines = thruster_tables([turned, drive], StatedSize(5.6), {"rpm_1": 2880.0})
+    assert any(line.startswith('command = { channel = "rpm_1", unit = "rpm", span = 2880 }') for line in lines)

@@ -124,7 +124,7 @@ def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]
     ]
     if not stays:
         return []
-    step = local_resolution(values[known])
+    step = _local_steps(record, symbol)[known]
     stuck = [(a, b) for a, b in stays if abs(moves[b if b < len(moves) else a - 1]) > _STEPS * max(step[a], step[b])]
     first, last = max(stuck or stays, key=lambda ends: ends[1] - ends[0])
     count, (factor, unit) = last - first + 1, display_unit(record.channel(symbol).unit)
@@ -135,6 +135,15 @@ def _stuck_findings(record: Record, symbol: str, values: Array) -> list[Finding]
     text = f"record '{record.name}': channel '{symbol}' is stuck for {count} samples"
     evidence = f"{values[known[first]] * factor:.6g} {unit} from {moment(*record.time[known[[first, last]]])}"
     return [Finding(Severity.WARNING, "stuck", text, evidence)]
+
+
+def _local_steps(record: Record, symbol: str) -> Array:
+    """Return the step in which each value of a channel was written, (n,); of a speed and a course, that of either."""
+    steps = local_resolution(record[symbol])
+    if symbol not in ("u", "v") or not {"u", "v"} <= set(record.channels) or record.channel(symbol).frame != "earth":
+        return steps
+    speed, course = np.hypot(record["u"], record["v"]), np.arctan2(record["v"], record["u"])
+    return np.fmax(steps, np.fmax(local_resolution(speed), speed * local_resolution(course)))
 
 
 def lag_findings(record: Record) -> tuple[Finding, ...]:

@@ -11,10 +11,12 @@ from seatrial.data.check.motion import jackknife_least_squares, least_squares, s
 _SMOOTHING_S = 3.0  # s over which velocities and yaw rate are smoothed; chosen: short against a turn
 _FEWEST_ROWS = 60  # of all runs together, for a fit of some eight coefficients; chosen
 _MOST_ROWS = 6000  # of all runs together that are fitted; chosen: some tenths of a second
+_ROUNDS = 6  # of Gauss and Newton for one coefficient that is not linear; chosen
+_LEAST_SHARE = 0.2  # of its speed that a craft keeps in any turn; chosen
 _SPEED = 2  # place of the speed among the coefficients
 _SEPARATE = 0.04  # of a speed, up to which its standard error separates a current from it; chosen
 _ROUND = np.radians(300.0)  # sector of headings on which what a turn does to the craft averages out; chosen
-_SEVERAL = np.radians(60.0)  # sector of headings that are several courses; chosen: a wide zigzag is none
+_SEVERAL = np.radians(120.0)  # sector of headings that are several courses; chosen: a wide zigzag is none
 _CLEAR, _LEAST_CURRENT = 4.0, 0.05  # standard errors and share of the speed from which on there is a current; chosen
 _TIMES_S = (0.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0)  # s in which a craft's speed recovers, that are tried; chosen
 
@@ -68,29 +70,37 @@ def speed_through_water(records: Sequence[Record]) -> SpeedAndCurrent | None:
 
     Without positions u and v must be over ground.
 
-    The velocity over ground is R(psi) [u, v] + current (Fossen 2021, section 10.3). To first order in what a turn does,
-    surge falls with the square of the yaw rate and recovers in a time of its own (the one of some that fits best), and
-    sway follows the yaw rate. Standard errors leave out one of eight stretches of the runs at a time.
+    The velocity over ground is R(psi) [u, v] + current (Fossen 2021, section 10.3). A propeller that holds the speed U
+    and a hull whose resistance grows with the squares of surge and yaw rate balance at u^2 = U^2 - c r^2 (the surge
+    equation of Yasukawa & Yoshimura 2015, eq. (1), about a steady turn); r^2 acts with a delay of its own, the one of
+    some that fits best. Sway follows the yaw rate and, as it lags behind, its
+    derivative. Standard errors leave out one of eight stretches of the runs at a
+    time.
     """
     tracks = [track for record in records if (track := _Track.from_record(record)) is not None]
     if not tracks or sum(len(track.c) for track in tracks) < _FEWEST_ROWS:
         return None
     every = 1 + sum(len(track.c) for track in tracks) // _MOST_ROWS
-    target = np.concatenate([track.target(every) for track in tracks])
-
-    def features(seconds: float) -> Array:
-        return np.concatenate([
-            track.features(seconds, place, len(tracks), every) for place, track in enumerate(tracks)
-        ])  # fmt: skip
-
-    best = min(_TIMES_S, key=lambda seconds: least_squares(features(seconds), target)[1])
-    table = features(best)
+    table, target = min(
+        (_linearised(tracks, seconds, every) for seconds in _TIMES_S), key=lambda f: least_squares(*f)[1]
+    )
     values, errors = jackknife_least_squares(table, target)
     return SpeedAndCurrent(
         float(values[_SPEED]), float(errors[_SPEED]), float(values[0]), float(values[1]),
         float(np.hypot(*errors[:2]) / np.sqrt(2.0)),
         _sector(np.concatenate([np.arctan2(track.s, track.c) for track in tracks])),
     )  # fmt: skip
+
+
+def _linearised(tracks: Sequence["_Track"], seconds: float, every: int) -> tuple[Array, Array]:
+    """Return features and target of the speed law about its best coefficients (Gauss-Newton)."""
+    measured = np.concatenate([track.target(every) for track in tracks])
+    speed, loss = float(np.sqrt(2.0 * np.mean(measured**2))), 0.0
+    for _ in range(_ROUNDS):
+        parts = [track.features(seconds, place, len(tracks), every, speed, loss) for place, track in enumerate(tracks)]
+        table, known = (np.concatenate([part[i] for part in parts]) for i in range(2))
+        speed, loss = (float(x) for x in least_squares(table, measured - known)[0][_SPEED : _SPEED + 2])
+    return table, measured - known
 
 
 def _sector(headings: Array) -> float:
@@ -130,16 +140,27 @@ class _Track:
     def target(self, every: int) -> Array:
         return np.stack([self.north, self.east], axis=1)[::every].ravel()
 
-    def features(self, seconds: float, place: int, runs: int, every: int) -> Array:
-        """Current north and east, speed, loss of speed, sway, and the speed of each run at its start over that."""
+    def features(
+        self, seconds: float, place: int, runs: int, every: int, speed: float, loss: float
+    ) -> tuple[Array, Array]:
+        """Return slopes of the velocity over ground by the coefficients, and what it has beside slopes times them.
+
+        Coefficients: current north and east, speed U, loss c, two of sway, and for each run its speed at its start
+        over U.
+        """
         c, s, one, zero = self.c, self.s, np.ones(len(self.c)), np.zeros(len(self.c))
         from scipy.signal import lfilter
 
         kept = np.exp(-self.dt * np.arange(len(c)) / seconds) if seconds else zero
         share = 1.0 - np.exp(-self.dt / seconds) if seconds else 1.0
-        loss = lfilter([share], [1.0, share - 1.0], self.rate**2)
+        turning = lfilter([share], [1.0, share - 1.0], self.rate**2)
+        u = np.sqrt(np.maximum(speed**2 - loss * turning, (_LEAST_SHARE * speed) ** 2))
+        by_speed, by_loss = speed / u, -0.5 * turning / u
+        beside = u - by_speed * speed - by_loss * loss
         starts = np.zeros((runs, len(c)))
         starts[place] = kept
-        north = [one, zero, c, -c * loss, -s * self.rate, *(c * starts)]
-        east = [zero, one, s, -s * loss, c * self.rate, *(s * starts)]
-        return np.array([north, east]).transpose(2, 0, 1)[::every].reshape(-1, len(north))
+        change = np.gradient(self.rate, self.dt)
+        north = [one, zero, c * by_speed, c * by_loss, -s * self.rate, -s * change, *(c * starts)]
+        east = [zero, one, s * by_speed, s * by_loss, c * self.rate, c * change, *(s * starts)]
+        table = np.array([north, east]).transpose(2, 0, 1)[::every].reshape(-1, len(north))
+        return table, np.stack([c * beside, s * beside], axis=1)[::every].ravel()

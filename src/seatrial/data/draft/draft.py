@@ -1,6 +1,5 @@
 """A trial file drafted from logs: every guess with its evidence, what is unsure as a commented line."""
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -19,7 +18,13 @@ from seatrial.data.draft.draft_text import (
     trial_text,
     unrecognised_columns,
 )
-from seatrial.data.draft.guess import guess_columns, with_turned_thruster, without_conflicts
+from seatrial.data.draft.guess import (
+    NOZZLE,
+    guess_columns,
+    with_columns_of_turning,
+    with_turned_thruster,
+    without_conflicts,
+)
 from seatrial.data.draft.held_out import (
     NOTHING_HELD_OUT,
     HeldOutRuns,
@@ -58,6 +63,7 @@ from seatrial.data.draft.ship_estimates import (
 from seatrial.data.draft.starting_model import (
     StartingModel,
     in_a_current,
+    is_rate_steady,
     share_current,
     starting_model,
     thinned_rate,
@@ -69,7 +75,6 @@ from seatrial.data.trial.plausibility import ESTIMATED
 from seatrial.data.trial.records import need_release
 from seatrial.data.trial.run_data import run_name
 
-_NOZZLE = re.compile("nozzle|jet|bucket", re.IGNORECASE)  # in the name of a column that steers by the jet itself
 # deg, between which an angle lies; ours: a heading from -180 or to 360, rudders that turn to either side
 _ANGLES = {"psi": (-180.0, 360.0), "delta": (-90.0, 90.0)}
 _WIDER_THAN_A_STATE = 6.0  # range of a column, up to which it may number states, such as those of a fix; chosen
@@ -220,9 +225,11 @@ def draft_trial(
     records = [run_record(run.sources, parts) for run, parts in zip(runs, guesses, strict=True)]
     guesses = with_velocities_of_antenna(guesses, records, size.antenna)
     stretches = numbered([find_stretches(run.sources, one) for run, one in zip(runs, records, strict=True)])
-    guesses = [with_turned_thruster(parts) for parts in guesses]
+    turned = [with_turned_thruster(parts, is_rate_steady=is_rate_steady(records)) for parts in guesses]
+    if turned != guesses:
+        guesses, records = turned, [run_record(run.sources, parts) for run, parts in zip(runs, turned, strict=True)]
     symbols = {g.symbol for one in guesses[longest[0]] for g in one if g.is_used}
-    has_jet = any(_NOZZLE.search(str(g.source)) for one in guesses[longest[0]] for g in one if g.symbol == "delta")
+    has_jet = any(NOZZLE.search(str(g.source)) for one in guesses[longest[0]] for g in one if g.symbol == "delta")
     model = starting_model(symbols, records, size, has_jet=has_jet)
     # whatever a craft with thrusters does shows them: its runs stay whole where one can judge the others
     parts = _thruster_parts(runs, records, stretches) if model.has_thrusters else offered_parts(records, stretches)
@@ -247,10 +254,18 @@ def draft_trial(
         replace(_with_roles(block, model, held_out, session), antenna=size.antenna, is_released=is_released)
         for block in blocks
     ]
-    rate = thinned_rate(records, size.length, model.speed) if model.has_forces_of_a_ship else None
+    is_in_plane = model.has_forces_of_a_ship or model.has_thrusters
+    rate = thinned_rate(records, size.length, model.speed) if is_in_plane else None
     decays = _decays(runs, records, stretches) if model.rolls else {}
     columns_of_longest = [g for _, columns in blocks[0].sources for g in columns]
-    tables = tables_text(model, columns_of_longest, size, rate, heels_apart(decays))
+    tables = tables_text(
+        model,
+        columns_of_longest,
+        size,
+        rate,
+        heels_apart(decays),
+        _largest_rates(runs[longest[0]], guesses[longest[0]]),
+    )
     text = trial_text(blocks, tables, {**at_other_speeds, **left_out}, Path(folder).resolve())
     has_density = "\nrho = " in text or "in sea water" in text
     return DraftTrial(
@@ -263,9 +278,20 @@ def draft_trial(
     )  # fmt: skip
 
 
+def _largest_rates(run: LogRun, parts: Sequence[Sequence[ColumnGuess]]) -> dict[str, float]:
+    """The largest reading of each column that is the rate of a thruster, of all logs with the same columns."""
+    return {
+        guess.symbol: columns_by_source(source)[guess.source][1].high
+        for source, part in zip(run.sources, parts, strict=True)
+        for guess in part
+        if guess.is_used and guess.symbol.startswith("rpm_")
+    }
+
+
 def _named_columns(runs: Sequence[LogRun], size: StatedSize) -> list[list[tuple[ColumnGuess, ...]]]:
-    """What the columns of each source of each run are, by their names."""
-    return [without_conflicts([guess_columns(source, size.gear) for source in run.sources]) for run in runs]
+    """What the columns of each source of each run are, by their names, and where these say nothing by the heading."""
+    named = [without_conflicts([guess_columns(source, size.gear) for source in run.sources]) for run in runs]
+    return [with_columns_of_turning(run.sources, parts) for run, parts in zip(runs, named, strict=True)]
 
 
 def _other_speeds(

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
@@ -104,6 +105,7 @@ _CURRENT = 0.3  # m/s, standard deviation of an unknown current; as the advice o
 _LEAST_SPEED_ERROR = 0.005  # of a speed, for what its model of turns leaves out; chosen
 OPEN_SPEED = "# OPEN U_n"
 """Begins the line that asks for the speed through the water."""
+_NO_RATES: Mapping[str, float] = MappingProxyType({})
 _UNNAMED = "craft"  # a craft whose name is not stated; ours
 _NO_CURRENT = (
     f"# current = {_CURRENT:g}    # m/s: taken for a model in a basin, where none runs; uncomment it for open water"
@@ -112,12 +114,13 @@ _NO_CURRENT = (
 
 def tables_text(
     model: StartingModel, guesses: Sequence[ColumnGuess], size: StatedSize, rate: float | None = None,
-    heels: tuple[float, float] | None = None,
+    heels: tuple[float, float] | None = None, largest: Mapping[str, float] = _NO_RATES,
 ) -> list[str]:  # fmt: skip
     """Return the lines of ship and model, and of what else the model needs; of a model without a name what is missing.
 
     guesses: of all sources of the longest run; rate: at which residuals are taken [Hz]; None: that of the records.
     heels: least and largest about which roll decays swing [rad]; None: one serves all.
+    largest: reading of the channels of thrusters' rates, in the unit of their columns.
     """
     ship = ["[ship]", f"name = {quoted(size.name or _UNNAMED)}", *_ship_lines(model, size), ""]
     if not model.name:
@@ -140,7 +143,7 @@ def tables_text(
             if model.has_derivatives
             else []
         ),
-        *(thruster_tables(guesses, size) if model.has_thrusters else []),
+        *(thruster_tables(guesses, size, largest) if model.has_thrusters else []),
         "",
         *(excitation_lines() if model.has_waves else []),
         *_sensor_lines(model, guesses),
@@ -228,8 +231,10 @@ def _roll_lines(size: StatedSize) -> list[str]:
     ]
 
 
-def thruster_tables(guesses: Sequence[ColumnGuess], size: StatedSize) -> list[str]:
-    """Return one table for each command, on the side that the motion or its name shows."""
+def thruster_tables(
+    guesses: Sequence[ColumnGuess], size: StatedSize, largest: Mapping[str, float] = _NO_RATES
+) -> list[str]:  # fmt: skip
+    """Return one table for each command, on the side that the motion or its name shows; largest: readings of rates."""
     used = {g.symbol: g for g in guesses if g.is_used}
     commands = [g for symbol, g in sorted(used.items()) if symbol.startswith(("command_", "rpm_"))]
     sides = [g.side for g in commands]
@@ -239,8 +244,7 @@ def thruster_tables(guesses: Sequence[ColumnGuess], size: StatedSize) -> list[st
     for name, guess in zip(names, commands, strict=True):
         sign = {"port": -1.0, "starboard": 1.0}.get(name, 0.0)
         angle = f"alpha_{guess.symbol.rpartition('_')[2]}"
-        is_rate = guess.symbol.startswith("rpm")
-        unit = ', unit = "rpm" }    # add span = the rpm at full ahead' if is_rate else " }"
+        unit = _rate_text(largest[guess.symbol]) if guess.symbol in largest else " }"
         lines += [
             "", "[[thruster]]", f'name = "{name}"',
             _place_line(size.length, is_turned=angle in used),
@@ -250,6 +254,11 @@ def thruster_tables(guesses: Sequence[ColumnGuess], size: StatedSize) -> list[st
             *(['same_as = "starboard"    # the same coefficients'] if is_pair and name == "port" else []),
         ]  # fmt: skip
     return lines
+
+
+def _rate_text(largest: float) -> str:
+    """The end of a command that is a rate, whose full one is taken for the largest of the runs; coefficients follow."""
+    return f', unit = "rpm", span = {largest:.4g} }}    # ESTIMATED: rpm at full ahead, the most in the runs'
 
 
 def _place_line(length: float, *, is_turned: bool) -> str:

@@ -14,10 +14,10 @@ from seatrial.data.check import canonical_record
 from seatrial.data.check.inputs import SURE_EFFECT, ThrusterEffect, thruster_effects
 from seatrial.data.check.motion import jackknife_least_squares, smoothed, smoothed_derivative, window_length
 from seatrial.data.draft.column_guess import Changes, ColumnGuess
-from seatrial.data.draft.naming import NameGuess, guess_by_name, named_side, unit_in_heading
+from seatrial.data.draft.naming import NameGuess, columns_not_needed, guess_by_name, named_side, unit_in_heading
 from seatrial.data.draft.stored_parameters import OutputSetting, is_disabled, output_setting
 from seatrial.data.draft.stretches import smooth_speed, track_velocity
-from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, column_values
+from seatrial.data.draft.survey import ColumnSummary, LogSurvey, TopicSummary, column_values, columns_by_source
 from seatrial.data.readings import name_table
 from seatrial.physics.manoeuvres.track import has_track
 from seatrial.physics.models.thruster_layout import CommandInput, Thruster, ThrusterLayout
@@ -71,6 +71,37 @@ def recognised_columns(columns: dict[int, Array], dt: float) -> list[UnnamedColu
     return [*best[1], *_rudder(rest, yaw, rates[_index(best[1], "r")], psi.unit)]
 
 
+def columns_of_turning(columns: dict[int, Array], heading: Array, unit: str, dt: float) -> list[UnnamedColumn]:
+    """Return which columns (numbered, each (n,) without gaps) are the rate of a heading, and what turns it.
+
+    heading: (n,), in `unit`, deg or rad. The rate comes in either; the rudder is as for a log that has no names.
+    """
+    length = window_length(len(heading))
+    if length < 3 or not columns:  # samples of a window
+        return []
+    yaw = smoothed_derivative(np.unwrap(_ANGLE_UNITS[unit] * heading), dt, length)
+    smooth = {k: smoothed(values, length) for k, values in columns.items()}
+    rates = [
+        UnnamedColumn(k, "r", f"{name}/s", "", "", "the derivative of the heading")
+        for name, size in _ANGLE_UNITS.items()
+        for k, values in smooth.items()
+        if abs(abs(_ratio(size * values, yaw)) - 1.0) < _PAIR_RATIO
+    ]
+    rest = {k: values for k, values in smooth.items() if k not in {rate.index for rate in rates}}
+    acceleration = smoothed_derivative(yaw, dt, 3)  # samples: it is smooth already
+    shorter = {k: values[1:-1] for k, values in rest.items()}
+    return [*rates, *_rudder(shorter, yaw[1:-1], acceleration, unit)]
+
+
+def _ratio(values: Array, rate: Array) -> float:
+    """Return the factor by which values follow a rate, 0 where they do not."""
+    power, size = float(rate @ rate), float(values @ values)
+    if power == 0.0 or size == 0.0:
+        return 0.0
+    factor = float(values @ rate) / power
+    return factor if abs(factor) * math.sqrt(power / size) > _PAIR_CORRELATION else 0.0
+
+
 def _index(columns: list[UnnamedColumn], symbol: str) -> int:
     return next(column.index for column in columns if column.symbol == symbol)
 
@@ -79,14 +110,7 @@ def _derivative_pairs(smooth: dict[int, Array], rates: dict[int, Array]) -> list
     """Column and the column that is its derivative, in the same unit."""
     pairs = []
     for i, rate in rates.items():
-        power = float(rate @ rate)
-        for j, values in smooth.items():
-            if i == j or power == 0.0 or not np.any(values):
-                continue
-            factor = float(values @ rate) / power
-            match = factor * math.sqrt(power / float(values @ values))
-            if match > _PAIR_CORRELATION and abs(factor - 1.0) < _PAIR_RATIO:
-                pairs.append((i, j))
+        pairs += [(i, j) for j, values in smooth.items() if i != j and abs(_ratio(values, rate) - 1.0) < _PAIR_RATIO]
     return pairs
 
 
@@ -267,14 +291,20 @@ def _with_direction(effect: ThrusterEffect, guess: ColumnGuess) -> ColumnGuess:
 
 # What the columns of a log are by name; the judge of readings has their units, frames and signs.
 
-# headings of the angle of a thruster that is turned; chosen
-_TURNED = re.compile("steer|outboard|azimuth", re.IGNORECASE)
+# headings of the angle of a thruster that is turned; a steering angle may be that of a rudder behind a shaft; chosen
+_TURNED = re.compile("outboard|azimuth|engine|motor|pod", re.IGNORECASE)
+_STEERING = re.compile("steer", re.IGNORECASE)
+NOZZLE = re.compile("nozzle|jet|bucket", re.IGNORECASE)
+"""In the name of a column that steers by the jet itself."""
 # headings of the rate of a propeller or its shaft, which no gear stands before
 _SHAFT = re.compile("prop|shaft|welle|aksel|arbre|helice|hélice|elica", re.IGNORECASE)
 _TWINS = 2  # rudders, nozzles or shafts of which half the sum is one input
 # what such an input means for a model; thrust goes with D^4 at one rate and advance
 _OF_TWINS = {"delta": "in mmg A_R is the area of both", "n": "a propeller of 1.19 times D_P stands for two"}
 _PLACE_OR_SPEED = frozenset({"lat", "x0", "u", "v", "sog", "stw"})
+_STEERS = ("delta", "command_", "alpha_", "n_")  # beginnings of the channels of what steers a craft
+_WAVES = frozenset({"zeta", "F3", "alpha_w"})  # channels of craft that waves move
+_NO_RUDDER = "an order, or what no model takes: then leave it out"
 _HEADING_OF_PHONES = "azimuth"  # of the triple azimuth, pitch, roll (Android, SensorManager.getOrientation)
 _FOLDERS_READ = 3  # folders above a file whose names may be those of a topic; chosen
 
@@ -357,6 +387,48 @@ def _without_names(survey: LogSurvey, topic: TopicSummary) -> list[ColumnGuess]:
         )
         for recognised_column in recognised_columns(complete, 1.0 / topic.rate)
     ]
+
+
+def with_columns_of_turning(
+    surveys: Sequence[LogSurvey], parts: Sequence[tuple[ColumnGuess, ...]]
+) -> list[tuple[ColumnGuess, ...]]:
+    """Return the guesses of the sources of a run with the yaw rate and the rudder that no name shows.
+
+    They are sought where the heading is, among columns that are not recognised. A rudder stays open.
+    """
+    used = {g.symbol for part in parts for g in part if g.is_used}
+    sought = {"r"} - used if any(s.startswith(_STEERS) for s in used) else {"r", "delta"} - used
+    if "psi" not in used or not sought or used & _WAVES:
+        return list(parts)
+    return [(*part, *_turning_guesses(survey, part, sought)) for survey, part in zip(surveys, parts, strict=True)]
+
+
+def _turning_guesses(survey: LogSurvey, part: Sequence[ColumnGuess], sought: set[str]) -> list[ColumnGuess]:
+    """The columns of a source that are sought, by its heading."""
+    psi = next((g for g in part if g.is_used and g.symbol == "psi"), None)
+    places = columns_by_source(survey)
+    if psi is None or psi.source not in places:
+        return []
+    topic, heading = places[psi.source]
+    table = next(one for one in survey.log.tables if one.topic == topic.topic)
+    known = {str(g.source) for g in part}
+    names = [str(s) for s, (of, _) in places.items() if of is topic and not isinstance(s, int) and s not in known]
+    unknown = set(names) - set(columns_not_needed(names, {g.symbol for g in part if g.is_used}))
+    numbers = {places[name][1].number: name for name in unknown if not places[name][1].is_constant}
+    values = {k: column_values(table, k - 1) for k in (*numbers, heading.number)}
+    complete = {k: cells for k, cells in values.items() if cells is not None and np.all(np.isfinite(cells))}
+    if heading.number not in complete or not math.isfinite(topic.rate):
+        return []
+    angles = complete.pop(heading.number)
+    unit = psi.unit or ("rad" if np.ptp(angles) <= 2.0 * math.pi else "deg")
+    found = columns_of_turning(dict(sorted(complete.items())), angles, unit, 1.0 / topic.rate)
+    return [
+        ColumnGuess(
+            numbers[column.index], column.symbol, "" if column.symbol == "delta" else column.unit,
+            evidence=(column.evidence,), other_reading=_NO_RUDDER if column.symbol == "delta" else "",
+        )
+        for column in {column.symbol: column for column in reversed(found)}.values() if column.symbol in sought
+    ]  # fmt: skip
 
 
 def _has_tilt(survey: LogSurvey, topic: TopicSummary) -> bool:
@@ -482,20 +554,37 @@ def _are_twins(used: ColumnGuess, other: ColumnGuess) -> bool:
     )
 
 
-def with_turned_thruster(parts: Sequence[Sequence[ColumnGuess]]) -> tuple[tuple[ColumnGuess, ...], ...]:
+def with_turned_thruster(
+    parts: Sequence[Sequence[ColumnGuess]], *, is_rate_steady: bool = True
+) -> tuple[tuple[ColumnGuess, ...], ...]:
     """Return the guesses, where what steers is the only thruster, turned: its angle is the direction of the thrust.
 
-    An angle that turns the craft to starboard is a thrust to port, at the stern.
+    An angle that turns the craft to starboard is a thrust to port, at the stern. The rate of its engine is what drives
+    it where no command is recorded; the turns of its gear are in the coefficients.
+
+    is_rate_steady: whether the rate is one in all runs; a nozzle behind such a one is taken for a rudder.
     """
     used = {one.symbol: one for part in parts for one in part if one.is_used}
-    commands = [one for one in used if one.startswith(("command_", "rpm_"))]
+    drives = [one for one in used.values() if one.symbol.startswith(("command_", "rpm_"))]
+    rates = [one for part in parts for one in part if one.symbol == "n"]
     steers = used.get("delta")
-    if steers is None or steers.is_open or len(commands) != 1 or not _TURNED.search(str(steers.source)):
+    is_turned = steers is not None and not steers.is_open and (
+        _TURNED.search(str(steers.source))
+        or (drives and _STEERING.search(str(steers.source)))
+        or (not is_rate_steady and NOZZLE.search(str(steers.source)))
+    )  # fmt: skip
+    drives = drives or rates
+    if steers is None or not is_turned or len(drives) != 1:
         return tuple(map(tuple, parts))
+    drive = drives[0]
+    if drive.symbol == "n":
+        because = f"{drive.evidence[0].partition(':')[0]}, of the thruster that turns"
+        drive = replace(drive, symbol="rpm_1", scale=1.0, is_used=True, unused_because="", evidence=(because,))
     turned = replace(
-        steers, symbol=f"alpha_{commands[0].rpartition('_')[2]}", positive="" if steers.positive == "port" else "port"
+        steers, symbol=f"alpha_{drive.symbol.rpartition('_')[2]}", positive="" if steers.positive == "port" else "port"
     ).with_evidence("turns the only thruster; that of a rudder behind a fixed one is channels.delta, its sign reversed")
-    return tuple(tuple(turned if one is steers else one for one in part) for part in parts)
+    of = {id(steers): turned, id(drives[0]): drive}
+    return tuple(tuple(of.get(id(one), one) for one in part) for part in parts)
 
 
 def _unused(guess: ColumnGuess, reason: str) -> ColumnGuess:

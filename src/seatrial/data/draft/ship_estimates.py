@@ -353,10 +353,10 @@ class HeaderStatement:
 def header_statements(survey: LogSurvey) -> dict[str, HeaderStatement]:
     """Return symbol -> what the sentences above the table of a text log say of it; ``antenna`` for that of a receiver.
 
-    A clause without a quantity goes on about that of the clause before it.
+    A clause without a quantity goes on about that of the clause before it. Several spaces end a sentence.
     """
     statements = dict[str, HeaderStatement]()
-    sentences = re.split(r"[;\n]|\.\s", _header(survey))
+    sentences = re.split(r"[;\n\t]|\.\s|\s{2,}", _header(survey))
     for sentence in (text for text in sentences if _PLACE.search(text) or re.search(_POSITIVE, text, re.IGNORECASE)):
         symbol = ""
         for clause in sentence.split(","):

@@ -129,7 +129,8 @@ def starting_model(
     if "delta" in symbols:
         return _steered_model(symbols, records, size, has_jet=has_jet)
     if commands:
-        return StartingModel(_THRUSTERS, "of a craft that steers by its thrusters", (), "", commands)
+        why = "of a craft that steers by its thrusters"
+        return StartingModel(_THRUSTERS, why, (), "", commands, _approach_speed(records))
     if _WAVE in symbols and symbols & _MOTION_IN_WAVES:
         return StartingModel(_WAVES, "of a craft that waves of recorded elevation move", inputs=(_WAVE,))
     if symbols & _ROLL_MOTION and not symbols & _STEERED_MOTION:
@@ -188,7 +189,7 @@ def _steered_model(
             why = "forces of hull, propeller and rudder; abkowitz, without the last two, holds within the runs only"
             reason = "hull, wake, thrust and the flow at the rudder, near formulas by priors as wide as their errors"
             return StartingModel(_MMG, why, _MMG_TERMS, reason, ("delta",), approach, particulars)
-        if _is_rate_steady(records):
+        if is_rate_steady(records):
             why = "forces over drift, yaw rate, rudder; mmg goes farther with a propeller's rate (init --gear)"
             reason = f"the linear terms{', and the damping of fast turns, as rudder angles differ' if falls else ''}"
             free = (*_LINEAR_TERMS, "N_rrr") if falls else _LINEAR_TERMS
@@ -222,8 +223,8 @@ def _advance(records: Sequence[Record | None]) -> float:
     return float(np.median(ways)) if ways else 0.0
 
 
-def _is_rate_steady(records: Sequence[Record | None]) -> bool:
-    """Whether the propeller turns at one rate in all runs, as far as it is recorded."""
+def is_rate_steady(records: Sequence[Record | None]) -> bool:
+    """Return whether the propeller turns at one rate in all runs, as far as it is recorded."""
     rates = [record["n"] for record in records if record is not None and "n" in record]
     if not rates:
         return True

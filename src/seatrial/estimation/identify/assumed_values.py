@@ -35,8 +35,9 @@ from seatrial.physics.simulate.replay import inputs_of
 MATTERS = 1.0
 """Change of a coefficient over half its interval, and of predictions over the noise, from which a value matters: an
 interval that is right but for this value would no longer hold the truth; chosen."""
-PLAUSIBLE_ERROR = {"rho": 0.025}
-"""Standard deviation of values that are known better than to `RELATIVE_CHANGE`: water between fresh and salt."""
+PLAUSIBLE_ERROR = {"rho": 0.025, "c55": 0.2}
+"""Standard deviation of values that are known better than to `RELATIVE_CHANGE`, water between fresh and salt, or worse:
+the moment of a waterplane whose coefficient is right within 0.05 (D'Arcangelo 1969, in Parsons 2003)."""
 _STEP = 0.01  # of such an error, of differences by it: small against the curve of outputs; chosen
 _LEVER = "y_"  # begins the names of the places of thrusters across the craft
 MAX_NAMED = 3
