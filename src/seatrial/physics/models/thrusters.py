@@ -61,6 +61,9 @@ _COUPLED = {
     "Y_T": _HullTerm(0.0, "1", 0, "side force over the sum of thrusts", is_free=False),
     "Y_NT": _HullTerm(0.0, "1/m", -1, "side force over the thrusters' moment"),
 }
+_LIFT = frozenset({"N_ur", "Y_uv"})
+"""Coefficients of lift against its own motion. As those of a hull at rest they take energy out of it: -U m_a and
+-U x^2 m_a of a slender body with added mass m_a at its end x (Newman 1977, Marine Hydrodynamics, section 7.7)."""
 COUPLINGS = tuple(_COUPLED)
 """Coefficients by which one motion acts on another, and thrusts on sway."""
 # nodes of the Gauss-Legendre rule of eight points, its negative half (Abramowitz & Stegun 1964, table 25.4)
@@ -129,7 +132,7 @@ def _voltage_factor(sheet: Sheet) -> sp.Symbol:
 def _coefficient(sheet: Sheet, layout: ThrusterLayout, name: str, term: _HullTerm) -> sp.Symbol:
     free = term.is_free and (name in _DIAGONAL or layout.damping is Damping.FULL)
     size = layout.length**term.power * (layout.mass if "kg" in term.unit else 1.0)
-    upper = 0.0 if name in _DIAGONAL else math.inf  # a hull at rest in water takes energy out of every motion
+    upper = 0.0 if name in _DIAGONAL or name in _LIFT else math.inf
     return sheet.parameter(
         name, term.start * size, term.unit, term.meaning, HULL, free=free, upper=upper, scale=_SCALE * size
     )
