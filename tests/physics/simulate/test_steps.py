@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from seatrial.core.values import Array
 from seatrial.physics.models import model_named
 from seatrial.physics.simulate import trajectory
-from seatrial.physics.simulate.batch import MOST_SUBSTEPS, is_within_range, sufficient_substeps
+from seatrial.physics.simulate.batch import MOST_SUBSTEPS, error_over_range, sufficient_substeps
 from seatrial.physics.simulate.states import actuator_motion
 
 ROLL = {"b_1": 0.04, "b_2": 0.25, "c_1": (2.0 * math.pi / 5.0) ** 2, "phi_0": 0.0}  # a period of 5 s
@@ -51,9 +51,14 @@ def test_a_model_that_diverges_by_itself_keeps_its_steps() -> None:
         counts.append(count)
         return np.array([[0.0], [1.0 / count], [np.nan]])
 
-    assert sufficient_substeps(simulate, is_within_range) == 1
+    assert sufficient_substeps(simulate, error_over_range) == 1
     assert max(counts) == MOST_SUBSTEPS
 
 
 def test_steps_are_doubled_until_nothing_moves() -> None:
-    assert sufficient_substeps(lambda n: np.array([[0.0], [1.0 + n**-4.0]]), is_within_range) == 16
+    assert sufficient_substeps(lambda n: np.array([[0.0], [1.0 + n**-4.0]]), error_over_range) == 16
+
+
+def test_more_steps_are_for_nothing_where_any_difference_grows() -> None:
+    """The position of an unstable craft after minutes: each number of steps ends elsewhere."""
+    assert sufficient_substeps(lambda n: np.array([[0.0], [float(np.sin(n**2.0))]]), error_over_range) <= 4

@@ -257,8 +257,8 @@ def thruster_tables(
 
 
 def _rate_text(largest: float) -> str:
-    """The end of a command that is a rate, whose full one is taken for the largest of the runs; coefficients follow."""
-    return f', unit = "rpm", span = {largest:.4g} }}    # ESTIMATED: rpm at full ahead, the most in the runs'
+    """The end of a command that is a rate: what coefficients call full is the largest of the runs."""
+    return f', unit = "rpm", span = {largest:.4g} }}    # rpm called full ahead: the most in the runs'
 
 
 def _place_line(length: float, *, is_turned: bool) -> str:

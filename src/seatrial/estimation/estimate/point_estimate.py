@@ -17,7 +17,7 @@ from seatrial.estimation.problem.population import SessionPopulation
 from seatrial.estimation.problem.prediction_error import PredictionError
 from seatrial.estimation.problem.static_forces import StaticForces
 from seatrial.numerics.optimise import NormalEquations, Optimum, Status, bounded_step, levenberg_marquardt
-from seatrial.physics.simulate.batch import MOST_SUBSTEPS, SIMULATION_ERROR, is_within_range, sufficient_substeps
+from seatrial.physics.simulate.batch import MOST_SUBSTEPS, SIMULATION_ERROR, error_over_range, sufficient_substeps
 
 # Runge-Kutta steps in a sample of an output-error problem: none so long that its error shows beside the noise.
 
@@ -33,12 +33,12 @@ def with_steps_of_start(problem: OutputError, shared: Array, local: Array) -> Ou
     if problem.model.is_affine:
         return problem
 
-    def is_close(coarse: Array, fine: Array) -> bool:
+    def excess(coarse: Array, fine: Array) -> float:
         error = np.sqrt(np.mean((fine - coarse) ** 2, axis=0)) if len(fine) else np.zeros(1)
-        return bool(np.all(error <= _START_ERROR * problem.noise))
+        return float(np.max(error / np.maximum(_START_ERROR * problem.noise, 1e-300)))  # above zero, for a division
 
     simulate = _simulation(problem, shared, local)
-    return replace(problem, substeps=sufficient_substeps(simulate, is_close, problem.substeps))
+    return replace(problem, substeps=sufficient_substeps(simulate, excess, problem.substeps))
 
 
 def _simulation(problem: OutputError, shared: Array, local: Array) -> Callable[[int], Array]:
@@ -65,7 +65,7 @@ def sufficient_steps_of_optimum(problem: OutputError, optimum: Optimum, least: i
             return replace(problem, substeps=substeps).normal(shared, optimum.local)
 
     if np.all(problem.noise <= SIMULATION_ERROR * np.nanstd(problem.data.measured, axis=0)):
-        return sufficient_substeps(_simulation(problem, shared, optimum.local), is_within_range, least)
+        return sufficient_substeps(_simulation(problem, shared, optimum.local), error_over_range, least)
     before = optimum.normal if count == problem.substeps else normal(count)
     while 2 * count <= MOST_SUBSTEPS:
         after = normal(2 * count)

@@ -16,38 +16,44 @@ from seatrial.numerics.kernels.kernel import TangentPointer
 MOST_SUBSTEPS = 64
 """Runge-Kutta steps in a sample at most: a lag of 0.05 s, the least there is, logged once a second; chosen."""
 
+_NO_BETTER = 2.0  # of the least error, up to which more steps were for nothing: half of them err by 16 times; chosen
 SIMULATION_ERROR = 1e-4
 """Error of a simulation that no plot nor table shows, share of a channel's range in the run; chosen."""
 
 
 def sufficient_substeps(
-    simulate: Callable[[int], Array], is_close: Callable[[Array, Array], bool], first: int = 1
+    simulate: Callable[[int], Array], excess: Callable[[Array, Array], float], first: int = 1
 ) -> int:
     """Return the least number of steps in a sample, doubled from `first` on, whose halves change nothing that matters.
 
-    Where even `MOST_SUBSTEPS` end outside all bounds, the model itself diverges, and the first number remains.
+    Where even `MOST_SUBSTEPS` end outside all bounds, the model itself diverges, and the first number remains. Where
+    they change as much as before, the motion grows from any difference: the least number remains that is nearly as
+    good as the best.
 
     Args:
         simulate: outputs (rows, ny) with so many steps in a sample; NaN after a divergence.
-        is_close: whether outputs, all finite, differ from those of half the step by no more than the purpose allows.
+        excess: difference of outputs, all finite, from those of half the step, over what the purpose allows.
     """
-    coarse, count = simulate(first), first
+    coarse, count, errors = simulate(first), first, dict[int, float]()
     while 2 * count <= MOST_SUBSTEPS:
         fine = simulate(2 * count)
         if np.array_equal(np.isfinite(coarse), np.isfinite(fine)):
             within = np.isfinite(fine).all(axis=1)
-            if is_close(coarse[within], fine[within]):
+            errors[count] = excess(coarse[within], fine[within])
+            if errors[count] <= 1.0:
                 return count if within.all() else first
         count, coarse = 2 * count, fine
-    return count if np.isfinite(coarse).all() else first
+    if not np.isfinite(coarse).all():
+        return first
+    return min((n for n, error in errors.items() if error <= _NO_BETTER * min(errors.values())), default=count)
 
 
-def is_within_range(coarse: Array, fine: Array) -> bool:
-    """Return whether outputs (rows, ny) differ by less than `SIMULATION_ERROR` of each one's range."""
+def error_over_range(coarse: Array, fine: Array) -> float:
+    """Return by how much outputs (rows, ny) differ over `SIMULATION_ERROR` of each one's range."""
     if not len(fine):
-        return True
-    error = np.max(np.abs(fine - coarse), axis=0)
-    return bool(np.all(error <= SIMULATION_ERROR * np.ptp(fine, axis=0)))
+        return 0.0
+    error, allowed = np.max(np.abs(fine - coarse), axis=0), SIMULATION_ERROR * np.ptp(fine, axis=0)
+    return float(np.max(np.divide(error, allowed, out=np.where(error > 0.0, np.inf, 0.0), where=allowed > 0.0)))
 
 
 # Many segments of one model at once, as arrays: outputs, and outputs with sensitivities.

@@ -23,7 +23,7 @@ from seatrial.core.values import (
 from seatrial.core.values.arrays import Between
 from seatrial.core.values.notation import OPPOSITE
 from seatrial.physics.manoeuvres.recognition import TRUE
-from seatrial.physics.simulate.batch import is_within_range, sufficient_substeps
+from seatrial.physics.simulate.batch import error_over_range, sufficient_substeps
 from seatrial.physics.simulate.linear import batch_class
 
 # Between records and a model's arrays: where inputs take the model's signs, and lose them again.
@@ -215,7 +215,7 @@ def trajectory(
         return one.simulate(0, 1, start[None], model.parameters.values[None], np.empty((1, 0)))[0]
 
     if substeps is None:
-        substeps = 1 if model.is_affine else sufficient_substeps(simulated, is_within_range)
+        substeps = 1 if model.is_affine else sufficient_substeps(simulated, error_over_range)
     y, nx = simulated(substeps), len(model.states)
     return np.ascontiguousarray(y[:, :nx]), y[:, nx:]
 

@@ -12,7 +12,7 @@ from seatrial.core.equations.model import RUDDER
 from seatrial.core.values import NOTATION, Array, Index, InputError, Record, spelling_hint
 from seatrial.numerics.local_polynomials import smoothed_locally
 from seatrial.physics.sensors.measured_outputs import is_late
-from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch, is_within_range, sufficient_substeps
+from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch, error_over_range, sufficient_substeps
 from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT, inputs_of
 
 # States that follow the inputs alone (thrusters behind their lags): known from the commands of a run.
@@ -141,7 +141,7 @@ def actuator_motion(model: Model, inputs: Array, dt: float) -> dict[str, Array]:
     def motion(substeps: int) -> Array:
         return replace(every, substeps=substeps).starts(model.parameters.values[None], np.zeros((1, 0)), ())
 
-    columns = motion(sufficient_substeps(motion, is_within_range))
+    columns = motion(sufficient_substeps(motion, error_over_range))
     return dict(zip(every.states, columns.T, strict=True))
 
 
