@@ -254,8 +254,7 @@ def draft_trial(
         replace(_with_roles(block, model, held_out, session), antenna=size.antenna, is_released=is_released)
         for block in blocks
     ]
-    is_in_plane = model.has_forces_of_a_ship or model.has_thrusters
-    rate = thinned_rate(records, size.length, model.speed) if is_in_plane else None
+    rate = thinned_rate(records, size.length, model.speed)
     decays = _decays(runs, records, stretches) if model.rolls else {}
     columns_of_longest = [g for _, columns in blocks[0].sources for g in columns]
     tables = tables_text(
