@@ -256,7 +256,7 @@ def fit_output_error(
         inflation = estimate.problem.inflation
         if colour_rounds:
             current = effective_inflation(residual_correlation(estimate.problem, estimate.residuals())[1])
-            inflation = current if k < colour_rounds else _fallen_inflation(inflation, current)
+            inflation = current if k < colour_rounds else fallen_inflation(inflation, current)
         again = replace(
             problem,
             noise=noise,
@@ -312,7 +312,7 @@ def effective_inflation(inflation: Array) -> Array | None:
     return np.where(coloured, inflation, 1.0) if np.any(coloured) else None
 
 
-def _fallen_inflation(held: Array | None, current: Array | None) -> Array | None:
+def fallen_inflation(held: Array | None, current: Array | None) -> Array | None:
     """Return the held inflation, (ny,), with the current one of channels that have become much whiter."""
     if held is None:
         return None
