@@ -33,7 +33,7 @@ def known(motions: tuple[str, ...], values: dict[str, float] | None = None) -> S
 def table_of(fit: SectionFit, rng: np.random.Generator | None = None, omega: np.ndarray = OMEGA) -> WaveResponses:
     """Its responses in waves of 12 and 20 mm, with errors of 0.5 % where they are drawn."""
     amplitude = np.where(np.arange(len(omega)) % 2, 0.012, 0.02)
-    bare = WaveResponses("table", omega, amplitude, {"z": np.ones(len(omega), dtype=complex)}, 0.005)
+    bare = WaveResponses("table", omega, amplitude, {"z": np.ones(len(omega), dtype=complex)})
     motions = fit.predicted(bare)
     if rng is not None:
         motions = {c: v * (1.0 + 0.005 * (rng.standard_normal((2, len(v))).T @ [1.0, 1j])) for c, v in motions.items()}

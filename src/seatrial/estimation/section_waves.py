@@ -1,7 +1,7 @@
 """A section's sway, heave and roll from a table of regular beam waves: potential theory and a few free corrections."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 from pathlib import Path
 
@@ -33,7 +33,7 @@ class WaveResponses:
         name: of the table, for messages.
         omega: rad/s, (n,); wave_amplitude: m, (n,).
         motions: channel y0, z or phi -> complex amplitude per m of wave amplitude, (n,), NaN where not measured.
-        relative_sd: of each complex amplitude: repeatability of the runs.
+        relative_sd: channel -> relative standard deviation of each complex amplitude, (n,); 1 % where none is given.
 
     Raises:
         InputError: no row, a channel that is none of a section, columns of other lengths, or values that are none.
@@ -43,29 +43,35 @@ class WaveResponses:
     omega: Array
     wave_amplitude: Array
     motions: Mapping[str, Complex]
-    relative_sd: float = 0.01
+    relative_sd: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for channel in self.motions:
             if channel not in CHANNELS.values():
                 hint = spelling_hint(channel, list(CHANNELS.values()))
                 raise InputError(f"{self.name}: '{channel}' is no motion of a section{hint}; give y0, z or phi")
-        if len({len(self.omega), len(self.wave_amplitude), *map(len, self.motions.values())}) != 1 or not self.motions:
+        columns = (self.omega, self.wave_amplitude, *self.motions.values(), *self.relative_sd.values())
+        if len(set(map(len, columns))) != 1 or not self.motions:
             raise InputError(f"{self.name}: give each of its columns a value in each row")
         if not (np.all(self.omega > 0.0) and np.all(self.wave_amplitude > 0.0) and len(self.omega)):
             raise InputError(f"{self.name}: frequencies and wave amplitudes must be positive; leave other rows out")
 
     def rows(self, chosen: Sequence[int] | Array) -> "WaveResponses":
         """Return the table with the chosen rows, by number or by truth."""
-        motions = {channel: values[chosen] for channel, values in self.motions.items()}
-        return replace(self, omega=self.omega[chosen], wave_amplitude=self.wave_amplitude[chosen], motions=motions)
+        motions, spreads = (
+            {channel: values[chosen] for channel, values in of.items()} for of in (self.motions, self.relative_sd)
+        )
+        return replace(self, omega=self.omega[chosen], wave_amplitude=self.wave_amplitude[chosen], motions=motions,
+            relative_sd=spreads,
+        )  # fmt: skip
 
 
-def read_responses(path: str | Path, relative_sd: float = 0.01) -> WaveResponses:
+def read_responses(path: str | Path) -> WaveResponses:
     """Read a table of responses from a CSV with a header; lines from `#` on are comment.
 
     Columns: `omega` [rad/s] or `period` [s], `wave_amplitude` [m], and for each motion y0 [m], z [m, down], phi [rad]
-    either `z_amplitude`, `z_phase_deg` or `z_real`, `z_imag`, per m of wave amplitude; empty where not measured.
+    either `z_amplitude`, `z_phase_deg` or `z_real`, `z_imag`, per m of wave amplitude, empty where not measured; and
+    `z_sd`, relative.
 
     Raises:
         InputError: no such file, a column that is missing or unknown, and as `WaveResponses`.
@@ -87,11 +93,13 @@ def read_responses(path: str | Path, relative_sd: float = 0.01) -> WaveResponses
     amplitude = columns.pop("wave_amplitude", None)
     if amplitude is None:
         raise InputError(f"{file.name} has no column 'wave_amplitude' [m]; add it")
-    motions: dict[str, Complex] = {}
+    motions, spreads = dict[str, Complex](), dict[str, Array]()
     for channel in CHANNELS.values():
         size, phase, real, imaginary = (
             columns.pop(f"{channel}_{part}", None) for part in ("amplitude", "phase_deg", "real", "imag")
         )
+        if (spread := columns.pop(f"{channel}_sd", None)) is not None:
+            spreads[channel] = spread
         if size is not None and phase is not None:
             motions[channel] = size * np.exp(1j * np.radians(phase))
         elif real is not None and imaginary is not None:
@@ -101,10 +109,10 @@ def read_responses(path: str | Path, relative_sd: float = 0.01) -> WaveResponses
                 f"{file.name}: '{channel}' lacks a column; give {channel}_amplitude and {channel}_phase_deg"
             )
     if columns:
-        known = [f"{c}_{part}" for c in CHANNELS.values() for part in ("amplitude", "phase_deg")]
+        known = [f"{c}_{part}" for c in CHANNELS.values() for part in ("amplitude", "phase_deg", "sd")]
         name = next(iter(columns))
         raise InputError(f"{file.name}: unknown column '{name}'{spelling_hint(name, known)}; rename or remove it")
-    return WaveResponses(file.name, 2.0 * np.pi / period if omega is None else omega, amplitude, motions, relative_sd)
+    return WaveResponses(file.name, 2.0 * np.pi / period if omega is None else omega, amplitude, motions, spreads)
 
 
 # What is free: corrections of potential theory, forces beside it, and what instruments do to the responses.
@@ -117,6 +125,7 @@ COEFFICIENTS = (*CORRECTIONS, *RESISTANCES, *INSTRUMENTS)
 """What may be free or fixed, SI: a, b, c beside potential theory and hydrostatics, d quadratic damping, f dry friction;
 gain of each channel over the motion, delay [s] of all channels behind the wave's, distance [m] of the section beyond
 the place of the wave."""
+_RELATIVE_SD = 0.01  # repeatability of a run where none is stated; chosen
 _ITERATIONS, _CLOSE = 400, 1e-10  # of the equivalent damping; relative change at which it ends; chosen
 _DEPENDENT, _TOGETHER = 1e-7, 0.99  # smallest singular value over the largest, correlation; chosen
 
@@ -257,6 +266,8 @@ def fit_section(
     theory = _Theory.of(Section.from_ship(ship), table, motions, depth)
     measured = np.column_stack([table.motions.get(c, np.full(len(table.omega), np.nan)) for c in CHANNELS.values()])
     is_measured = np.isfinite(measured) & np.array(theory.is_free)
+    plain = np.full(len(table.omega), _RELATIVE_SD)
+    spread = np.column_stack([table.relative_sd.get(c, plain) for c in CHANNELS.values()])[is_measured]
     count = 2 * len({(round(float(table.omega[i]), 6), j) for i, j in np.argwhere(is_measured)})
     if len(free) > count:
         raise InputError(
@@ -270,7 +281,7 @@ def fit_section(
         return known | dict(zip(free, (point * scales).tolist(), strict=True))
 
     def residuals(point: Array) -> Array:
-        left = (theory.readings(values_at(point))[is_measured] / measured[is_measured] - 1.0) / table.relative_sd
+        left = (theory.readings(values_at(point))[is_measured] / measured[is_measured] - 1.0) / spread
         return np.concatenate([left.real, left.imag])
 
     found = least_squares(residuals, begun, x_scale="jac", xtol=_CLOSE, ftol=_CLOSE, gtol=_CLOSE)
