@@ -9,7 +9,7 @@ Judged are periods of 0.9 s and longer that lie between others, as in the study.
 accelerometers feel of sway counts. The heave-roll rig has four periods only: the instruments and what the hull does in
 heave are those of the sway-heave rig without the same period; friction of its guide under side load is its own.
 
-Roll with free sway is not steady before the beach's reflection comes: at 1.24 s its amplitude grows by 28 % as the stretch
+Roll with free sway is not steady before the beach's reflection comes: at 1.24 s it grows by 28 % as the stretch
 moves by 4 s. No table of regular waves holds such a run to the limits.
 """
 
