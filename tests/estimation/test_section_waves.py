@@ -8,7 +8,7 @@ import pytest
 
 from seatrial.core.values import InputError, Record, Ship
 from seatrial.estimation.section_waves import CHANNELS, SectionFit, WaveResponses, fit_section, read_responses
-from seatrial.physics.hydro.section import MOTIONS, Section
+from seatrial.physics.hydro.section import MOTIONS, FloatingSection
 from seatrial.physics.simulate import replay
 from seatrial_studies.section2d.responses import harmonics
 
@@ -27,7 +27,9 @@ COMBINATIONS = [
 
 def known(motions: tuple[str, ...], values: dict[str, float] | None = None) -> SectionFit:
     """A section whose coefficients are known."""
-    return SectionFit(Section.from_ship(SHIP), motions, np.inf, TRUTH if values is None else values, {}, 0.0, ())
+    return SectionFit(
+        FloatingSection.from_ship(SHIP), motions, np.inf, TRUTH if values is None else values, {}, 0.0, ()
+    )
 
 
 def table_of(fit: SectionFit, rng: np.random.Generator | None = None, omega: np.ndarray = OMEGA) -> WaveResponses:
@@ -75,7 +77,7 @@ def test_the_model_simulated_in_waves_answers_as_the_table_has_it(motions: tuple
     values = {name: value for name, value in TRUTH.items() if name in ("a33", "a44", "c22", "d33", "d44", "b22")}
     fit, omega, amplitude = known(motions, values), 5.3, 0.012
     time = 0.02 * np.arange(6000)
-    force = Section.from_ship(SHIP).hydrodynamics(omega).excitation * amplitude
+    force = FloatingSection.from_ship(SHIP).hydrodynamics(omega).excitation * amplitude
     waves = np.real(force[:, None] * np.exp(1j * omega * time))
     record = Record.from_arrays("waves", time, {"F2": waves[0], "F3": -waves[1], "M4": waves[2]})
     moved = replay(fit.model(omega), record, dict.fromkeys(("y0", "v", "z", "z_dot", "phi", "p"), 0.0))
@@ -90,7 +92,7 @@ def test_the_model_simulated_in_waves_answers_as_the_table_has_it(motions: tuple
 
 def test_damping_radiates_what_a_drifting_section_takes_from_the_wave() -> None:
     """Without losses the wave's power stays in the wave: that of force over velocity is that of radiation damping."""
-    body, omega = Section.from_ship(SHIP), 5.0
+    body, omega = FloatingSection.from_ship(SHIP), 5.0
     made = body.hydrodynamics(omega)
     fit = known(("sway", "heave", "roll"), {"c22": 60.0})
     bare = WaveResponses("one", np.array([omega]), np.array([0.01]), {"z": np.ones(1, dtype=complex)})
@@ -103,7 +105,7 @@ def test_long_waves_carry_the_section_with_them() -> None:
     """Deep-water limit: heave follows the elevation, sway the water, roll the slope of the wave."""
     omega = np.array([0.3])
     bare = WaveResponses("long", omega, np.array([0.01]), {"z": np.ones(1, dtype=complex)})
-    free = replace(known(("sway", "heave", "roll"), {}), section=Section.from_ship(FORM_ALONE))
+    free = replace(known(("sway", "heave", "roll"), {}), section=FloatingSection.from_ship(FORM_ALONE))
     moved = free.predicted(bare)
     assert moved["z"][0] == pytest.approx(-1.0, abs=0.02)
     assert abs(moved["y0"][0]) == pytest.approx(1.0, abs=0.02)
@@ -143,7 +145,7 @@ def test_what_does_not_go_together_is_refused(motions: tuple[str, ...], free: tu
 
 def test_particulars_that_are_missing_are_named() -> None:
     with pytest.raises(InputError, match="lacks a positive KG, k_xx"):
-        Section.from_ship(Ship("section", {"B": 0.4, "d": 0.2, "L": 0.6, "m": 46.0}))
+        FloatingSection.from_ship(Ship("section", {"B": 0.4, "d": 0.2, "L": 0.6, "m": 46.0}))
 
 
 def written(folder: Path, text: str) -> Path:

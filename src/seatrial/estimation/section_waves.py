@@ -13,8 +13,8 @@ from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, InputError, Ship, spelling_hint
 from seatrial.core.values.files import is_file
 from seatrial.estimation.information.covariance import inverse
-from seatrial.physics.hydro import Complex, wavenumber
-from seatrial.physics.hydro.section import MOTIONS, Section, SectionMotion
+from seatrial.physics.hydro import Complex, G, wavenumber
+from seatrial.physics.hydro.section import MOTIONS, FloatingSection, SectionMotion
 from seatrial.physics.models.section import AT_REST, section
 
 __all__ = ["SectionFit", "WaveResponses", "fit_section", "read_responses"]
@@ -59,7 +59,7 @@ class WaveResponses:
     def rows(self, chosen: Sequence[int] | Array) -> "WaveResponses":
         """Return the table with the chosen rows, by number or by truth."""
         motions, spreads = (
-            {channel: values[chosen] for channel, values in of.items()} for of in (self.motions, self.relative_sd)
+            {c: values[chosen] for c, values in columns.items()} for columns in (self.motions, self.relative_sd)
         )
         return replace(self, omega=self.omega[chosen], wave_amplitude=self.wave_amplitude[chosen], motions=motions,
             relative_sd=spreads,
@@ -109,9 +109,9 @@ def read_responses(path: str | Path) -> WaveResponses:
                 f"{file.name}: '{channel}' lacks a column; give {channel}_amplitude and {channel}_phase_deg"
             )
     if columns:
-        known = [f"{c}_{part}" for c in CHANNELS.values() for part in ("amplitude", "phase_deg", "sd")]
+        possible = [f"{c}_{part}" for c in CHANNELS.values() for part in ("amplitude", "phase_deg", "sd")]
         name = next(iter(columns))
-        raise InputError(f"{file.name}: unknown column '{name}'{spelling_hint(name, known)}; rename or remove it")
+        raise InputError(f"{file.name}: unknown column '{name}'{spelling_hint(name, possible)}; rename or remove it")
     return WaveResponses(file.name, 2.0 * np.pi / period if omega is None else omega, amplitude, motions, spreads)
 
 
@@ -125,16 +125,19 @@ COEFFICIENTS = (*CORRECTIONS, *RESISTANCES, *INSTRUMENTS)
 """What may be free or fixed, SI: a, b, c beside potential theory and hydrostatics, d quadratic damping, f dry friction;
 gain of each channel over the motion, delay [s] of all channels behind the wave's, distance [m] of the section beyond
 the place of the wave."""
+_QUADRATIC, _DRY = 8.0 / (3.0 * np.pi), 4.0 / np.pi  # linear damping of equal work (Himeno 1981, eq. 3.4)
+_SAME_DIGITS = 6  # of frequencies that are one; chosen
 _RELATIVE_SD = 0.01  # repeatability of a run where none is stated; chosen
 _ITERATIONS, _CLOSE = 400, 1e-10  # of the equivalent damping; relative change at which it ends; chosen
-_DEPENDENT, _TOGETHER = 1e-7, 0.99  # smallest singular value over the largest, correlation; chosen
+_DEPENDENT, _SHARE = 1e-7, 0.1  # smallest singular value over the largest; share of a direction; chosen
+_TOGETHER = 0.99  # correlation; chosen
 
 
 @dataclass(frozen=True, eq=False)
 class _Theory:
     """Potential theory of a section at the frequencies of a table, (n, 3, 3) and (n, 3)."""
 
-    section: Section
+    section: FloatingSection
     table: WaveResponses
     is_free: tuple[bool, ...]
     depth: float
@@ -143,10 +146,14 @@ class _Theory:
     excitation: Complex
 
     @classmethod
-    def of(cls, body: Section, table: WaveResponses, motions: Sequence[str], depth: float) -> "_Theory":
+    def at_frequencies(
+        cls, body: FloatingSection, table: WaveResponses, motions: Sequence[str], depth: float
+    ) -> "_Theory":
         frequencies, place = np.unique(table.omega, return_inverse=True)
-        found = [body.hydrodynamics(float(w)) for w in frequencies]
-        arrays = (np.array([getattr(h, n) for h in found])[place] for n in ("added_mass", "damping", "excitation"))
+        hydrodynamics = [body.hydrodynamics(float(w)) for w in frequencies]
+        arrays = (
+            np.array([getattr(h, n) for h in hydrodynamics])[place] for n in ("added_mass", "damping", "excitation")
+        )
         return cls(body, table, tuple(m.value in motions for m in MOTIONS), depth, *arrays)
 
     def motions(self, values: Mapping[str, float]) -> Complex:
@@ -165,7 +172,7 @@ class _Theory:
         moved = np.zeros((len(omega), 3), dtype=np.complex128)
         velocity = np.zeros((len(omega), 3))
         for _ in range(_ITERATIONS):
-            equivalent = 8.0 / (3.0 * np.pi) * d * velocity + 4.0 / np.pi * f / np.hypot(velocity, AT_REST)
+            equivalent = _QUADRATIC * d * velocity + _DRY * f / np.hypot(velocity, AT_REST)
             impedance = linear + 1j * omega[:, None, None] * (equivalent[:, :, None] * np.eye(3))
             inside = np.ix_(range(len(omega)), free, free)
             moved[:, free] = np.linalg.solve(impedance[inside], self.excitation[:, free, None])[:, :, 0]
@@ -204,7 +211,7 @@ class SectionFit:
         open: sentences on what the table does not identify; empty where it identifies all.
     """
 
-    section: Section
+    section: FloatingSection
     motions: tuple[str, ...]
     depth: float
     values: Mapping[str, float]
@@ -214,8 +221,8 @@ class SectionFit:
 
     def predicted(self, table: WaveResponses) -> dict[str, Complex]:
         """Return what the channels would show in the waves of a table, per m of wave amplitude, channel -> (n,)."""
-        made = _Theory.of(self.section, table, self.motions, self.depth).readings(self.values)
-        return {CHANNELS[m]: made[:, k] for k, m in enumerate(MOTIONS) if m.value in self.motions}
+        readings = _Theory.at_frequencies(self.section, table, self.motions, self.depth).readings(self.values)
+        return {CHANNELS[m]: readings[:, k] for k, m in enumerate(MOTIONS) if m.value in self.motions}
 
     def errors_of(self, table: WaveResponses) -> dict[str, tuple[Array, Array]]:
         """Return predicted over measured, channel -> per cent of amplitude and degrees of phase, each (n,)."""
@@ -249,7 +256,7 @@ def fit_section(
     """Fit free coefficients of a section to its responses; all others are zero (gains 1) unless they are fixed.
 
     Args:
-        ship: particulars as `Section.from_ship` takes them.
+        ship: particulars as `FloatingSection.from_ship` takes them.
         motions: in which the section is free, of sway, heave and roll; it is held in the others.
         free: names of `COEFFICIENTS` to estimate, begun at their fixed values, if any.
         fixed: values of others.
@@ -261,38 +268,38 @@ def fit_section(
     """
     from scipy.optimize import least_squares
 
-    known = dict(fixed or {})
-    _refuse_unknown(table, motions, (*free, *known))
-    theory = _Theory.of(Section.from_ship(ship), table, motions, depth)
+    fixed = dict(fixed or {})
+    _refuse_unknown(table, motions, (*free, *fixed))
+    theory = _Theory.at_frequencies(FloatingSection.from_ship(ship), table, motions, depth)
     measured = np.column_stack([table.motions.get(c, np.full(len(table.omega), np.nan)) for c in CHANNELS.values()])
     is_measured = np.isfinite(measured) & np.array(theory.is_free)
     plain = np.full(len(table.omega), _RELATIVE_SD)
     spread = np.column_stack([table.relative_sd.get(c, plain) for c in CHANNELS.values()])[is_measured]
-    count = 2 * len({(round(float(table.omega[i]), 6), j) for i, j in np.argwhere(is_measured)})
+    count = 2 * len({(round(float(table.omega[i]), _SAME_DIGITS), j) for i, j in np.argwhere(is_measured)})
     if len(free) > count:
         raise InputError(
             f"{table.name}: {len(free)} unknowns cannot be identified from {count} numbers, two for each motion and "
             "wave period; fix some or add periods"
         )
     scales = np.array([_scale(theory, name) for name in free])
-    begun = np.array([known.get(n, 1.0 if n.startswith("gain_") else 0.0) for n in free]) / scales
+    start = np.array([fixed.get(n, 1.0 if n.startswith("gain_") else 0.0) for n in free]) / scales
 
     def values_at(point: Array) -> dict[str, float]:
-        return known | dict(zip(free, (point * scales).tolist(), strict=True))
+        return fixed | dict(zip(free, (point * scales).tolist(), strict=True))
 
     def residuals(point: Array) -> Array:
-        left = (theory.readings(values_at(point))[is_measured] / measured[is_measured] - 1.0) / spread
-        return np.concatenate([left.real, left.imag])
+        errors = (theory.readings(values_at(point))[is_measured] / measured[is_measured] - 1.0) / spread
+        return np.concatenate([errors.real, errors.imag])
 
-    found = least_squares(residuals, begun, x_scale="jac", xtol=_CLOSE, ftol=_CLOSE, gtol=_CLOSE)
-    jacobian = np.asarray(found.jac)
+    solution = least_squares(residuals, start, x_scale="jac", xtol=_CLOSE, ftol=_CLOSE, gtol=_CLOSE)
+    jacobian = np.asarray(solution.jac)
     _refuse_dependent(table, free, jacobian)
-    variance = float(found.fun @ found.fun) / max(1, count - len(free))
+    variance = float(solution.fun @ solution.fun) / max(1, count - len(free))
     covariance = variance * inverse(jacobian.T @ jacobian) * np.outer(scales, scales)
     errors = dict(zip(free, np.sqrt(np.diag(covariance)).tolist(), strict=True))
     return SectionFit(
-        theory.section, tuple(motions), depth, values_at(found.x), errors,
-        float(np.sqrt(np.mean(found.fun**2))), tuple(_open(theory, free, covariance)),
+        theory.section, tuple(motions), depth, values_at(solution.x), errors,
+        float(np.sqrt(np.mean(solution.fun**2))), tuple(_open(theory, free, covariance)),
     )  # fmt: skip
 
 
@@ -323,7 +330,7 @@ def _refuse_dependent(table: WaveResponses, free: Sequence[str], jacobian: Array
         raise InputError(f"{table.name} does not show {enumeration(silent)}: fix them")
     _, values, directions = np.linalg.svd(jacobian / sizes, full_matrices=False)
     if values[-1] < _DEPENDENT * values[0]:
-        together = [n for n, share in zip(free, directions[-1], strict=True) if abs(share) > 0.1]  # chosen
+        together = [n for n, share in zip(free, directions[-1], strict=True) if abs(share) > _SHARE]
         raise InputError(
             f"{table.name} does not identify {enumeration(together)}: they change the responses together alike; fix one"
         )
@@ -346,7 +353,7 @@ def _scale(theory: _Theory, name: str) -> float:
     body, middle = theory.section, float(np.median(theory.table.omega))
     letter, pair = name[0], name[1:]
     if pair not in _PLACES:
-        return {"delay": 1.0 / middle, "distance": 9.81 / middle**2}.get(name, 1.0)
+        return {"delay": 1.0 / middle, "distance": G / middle**2}.get(name, 1.0)
     i, j = _PLACES[pair]
     inertia = float(np.sqrt(body.inertia[i] * body.inertia[j]))
     velocity = middle * float(np.median(theory.table.wave_amplitude)) / (body.form.beam if pair == "44" else 1.0)

@@ -17,7 +17,7 @@ from seatrial.physics.hydro.excitation import Complex, G, group_velocity
 
 @dataclass(frozen=True)
 class LewisForm:
-    """Section x + i y = i M (e^(alpha - i theta) + ...), x to the side from the centre line, y down from the waterline.
+    """Contour x + i y = i M (e^(alpha - i theta) + ...), x to the side from the centre line, y down from the waterline.
 
     Attributes:
         scale: M, m.
@@ -44,12 +44,12 @@ class LewisForm:
             raise InputError("a section needs a positive beam, draught and area coefficient")
         ratio = (0.5 * beam - draught) / (0.5 * beam + draught)
         c = 3.0 + 4.0 * area_coefficient / math.pi + (1.0 - 4.0 * area_coefficient / math.pi) * ratio**2
-        if c > 4.5:
+        if c > 4.5:  # root of the source below
             raise InputError(
                 f"no Lewis form has the area coefficient {area_coefficient:g} at beam {beam:g} m and draught "
                 f"{draught:g} m; lower it"
             )
-        a3 = (3.0 - c + math.sqrt(9.0 - 2.0 * c)) / c
+        a3 = (3.0 - c + math.sqrt(9.0 - 2.0 * c)) / c  # von Kerczek & Tuck 1969
         a1 = ratio * (1.0 + a3)
         return cls(0.5 * beam / (1.0 + a1 + a3), a1, a3, beam, draught)
 
@@ -72,7 +72,7 @@ class LewisForm:
         theta, weights = 0.25 * np.pi * (nodes + 1.0), 0.25 * np.pi * weights
         (x, y), (_, dy) = self.points(theta), self.tangents(theta)
         depth = -2.0 * float(np.sum(weights * x * dy * y)) / self.area
-        return self.draught - depth + self.beam**3 / 12.0 / self.area
+        return self.draught - depth + self.beam**3 / 12.0 / self.area  # BM: second moment of the waterline
 
     @property
     def area(self) -> float:
@@ -84,7 +84,7 @@ class LewisForm:
 
 FRESH_WATER = 1000.0
 """Density of the water of a flume [kg/m^3], rounded."""
-TERMS, NODES = 16, 100
+TERMS, NODES = 16, 100  # multipoles, points of the contour; chosen
 
 
 class SectionMotion(StrEnum):
@@ -247,7 +247,7 @@ def _incident(omega: float, motion: SectionMotion, x: Array, y: Array, dx: Array
 
 
 @dataclass(frozen=True)
-class Section:
+class FloatingSection:
     """A prismatic body, origin at its centre of gravity; sway to starboard, heave down, roll to starboard.
 
     Attributes:
@@ -289,9 +289,9 @@ class Section:
 
     def hydrodynamics(self, omega: float) -> SectionHydrodynamics:
         """Return `section_hydrodynamics` of the whole body: kg, N and their like."""
-        one = section_hydrodynamics(self.form, omega, self.axis, self.density)
-        of_body = (self.length * value for value in (one.added_mass, one.damping, one.excitation))
-        return SectionHydrodynamics(*of_body, one.radiated_amplitude)
+        per_length = section_hydrodynamics(self.form, omega, self.axis, self.density)
+        of_body = (self.length * value for value in (per_length.added_mass, per_length.damping, per_length.excitation))
+        return SectionHydrodynamics(*of_body, per_length.radiated_amplitude)
 
     @property
     def inertia(self) -> Array:

@@ -46,8 +46,8 @@ def section() -> Model:
     stiffness = _coefficients(sheet, "c", "stiffness")
     sway, heave, roll = (_resisted(sheet, pair, velocity) for pair, velocity in (("22", v), ("33", z_dot), ("44", p)))
     free = [
-        sheet.parameter(f"s_{n}", 1.0, "1", f"1 where the section may {what}, 0 where it is held", HELD)
-        for n, what in (("2", "sway"), ("3", "heave"), ("4", "roll"))
+        sheet.parameter(f"s_{n}", 1.0, "1", f"1 where the section may {motion}, 0 where it is held", HELD)
+        for n, motion in (("2", "sway"), ("3", "heave"), ("4", "roll"))
     ]
     Y = sheet.bind("Y", F2 - damping["22"] * v - damping["24"] * p - stiffness["22"] * y - stiffness["24"] * phi - sway,
                    f"{NEWMAN}; {VISCOUS}", "N")  # fmt: skip
@@ -81,10 +81,11 @@ def _coefficients(sheet: Sheet, letter: str, meaning: str) -> dict[str, sp.Symbo
 
 def _resisted(sheet: Sheet, pair: str, velocity: sp.Symbol) -> sp.Symbol:
     """Return quadratic damping and dry friction of a motion."""
-    what = _MOTIONS[pair]
-    d = sheet.parameter(f"d{pair}", 0.0, _UNITS["d"][pair], f"quadratic damping, {what}", VISCOUS, scale=1.0,
+    motion = _MOTIONS[pair]
+    # scales: of the order of a section's in a flume, chosen
+    d = sheet.parameter(f"d{pair}", 0.0, _UNITS["d"][pair], f"quadratic damping, {motion}", VISCOUS, scale=1.0,
                         latex=f"d_{{{pair}}}")  # fmt: skip
-    f = sheet.parameter(f"f{pair}", 0.0, _UNITS["f"][pair], f"dry friction, {what}", FRICTION, scale=0.1,
+    f = sheet.parameter(f"f{pair}", 0.0, _UNITS["f"][pair], f"dry friction, {motion}", FRICTION, scale=1.0,
                         latex=f"f_{{{pair}}}")  # fmt: skip
     direction = velocity / sp.sqrt(velocity**2 + sp.Float(AT_REST) ** 2)
     resistance = d * sp.Abs(velocity) * velocity + f * direction
