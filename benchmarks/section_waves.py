@@ -22,7 +22,7 @@ import numpy as np
 from measure import Line, machine
 
 from seatrial.core.values import Array, InputError, Ship
-from seatrial.estimation.section_waves import SectionFit, WaveResponses, fit_section
+from seatrial.estimation.sea import SectionFit, WaveResponses, fit_section
 from seatrial_studies.section2d.analysis import analyse_records
 from seatrial_studies.section2d.modes import CROSS_AXIS, REPEATABILITY
 from seatrial_studies.section2d.responses import (

@@ -25,7 +25,7 @@ import seatrial as st
 from seatrial.control.controller import components
 from seatrial.control.front import Effort
 from seatrial.control.tune import tune
-from seatrial.estimation.section_waves import WaveResponses, fit_section
+from seatrial.estimation.sea import WaveResponses, fit_section
 from seatrial.physics.simulate import replay
 from seatrial.reporting.figures.control_charts import loop_diagram
 from seatrial_studies.section2d.analysis import analyse_records

@@ -17,8 +17,6 @@ from seatrial.physics.hydro import Complex, G, wavenumber
 from seatrial.physics.hydro.section import MOTIONS, FloatingSection, SectionMotion
 from seatrial.physics.models.section import AT_REST, section
 
-__all__ = ["SectionFit", "WaveResponses", "fit_section", "read_responses"]
-
 CHANNELS = {SectionMotion.SWAY: "y0", SectionMotion.HEAVE: "z", SectionMotion.ROLL: "phi"}
 """Channel of each motion: sway to starboard, heave down, roll to starboard."""
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from seatrial.core.values import InputError, Record, Ship
-from seatrial.estimation.section_waves import CHANNELS, SectionFit, WaveResponses, fit_section, read_responses
+from seatrial.estimation.sea import SectionFit, WaveResponses, fit_section, read_responses
+from seatrial.estimation.sea.section_waves import CHANNELS
 from seatrial.physics.hydro.section import MOTIONS, FloatingSection
 from seatrial.physics.simulate import replay
 from seatrial_studies.section2d.responses import harmonics
