@@ -331,8 +331,11 @@ ROLL = Mode(
 def theory_of_model(motion: SectionMotion, omega: float, sign: float = 1.0) -> SectionTheory:
     """Of the whole model."""
     one, k = section_hydrodynamics(FORM, omega, ROLL_AXIS), MOTIONS.index(motion)
-    values = float(one.added_mass[k, k]), float(one.damping[k, k]), complex(sign * one.excitation[k])
-    return SectionTheory(*(LENGTH * value for value in values))
+    return SectionTheory(
+        LENGTH * float(one.added_mass[k, k]),
+        LENGTH * float(one.damping[k, k]),
+        LENGTH * sign * complex(one.excitation[k]),
+    )
 
 
 def observation(mode: Mode, response: SectionResponse) -> MeasuredResponse:

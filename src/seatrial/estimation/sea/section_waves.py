@@ -6,11 +6,12 @@ from itertools import combinations
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.core.equations import Model
 from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import enumeration
-from seatrial.core.values import Array, InputError, Ship, spelling_hint
+from seatrial.core.values import Array, Index, InputError, Ship, spelling_hint
 from seatrial.core.values.files import is_file
 from seatrial.estimation.information.covariance import inverse
 from seatrial.physics.hydro import Complex, G, wavenumber
@@ -54,7 +55,7 @@ class WaveResponses:
         if not (np.all(self.omega > 0.0) and np.all(self.wave_amplitude > 0.0) and len(self.omega)):
             raise InputError(f"{self.name}: frequencies and wave amplitudes must be positive; leave other rows out")
 
-    def rows(self, chosen: Sequence[int] | Array) -> "WaveResponses":
+    def rows(self, chosen: Index | NDArray[np.bool_]) -> "WaveResponses":
         """Return the table with the chosen rows, by number or by truth."""
         motions, spreads = (
             {c: values[chosen] for c, values in columns.items()} for columns in (self.motions, self.relative_sd)
@@ -172,7 +173,7 @@ class _Theory:
         for _ in range(_ITERATIONS):
             equivalent = _QUADRATIC * d * velocity + _DRY * f / np.hypot(velocity, AT_REST)
             impedance = linear + 1j * omega[:, None, None] * (equivalent[:, :, None] * np.eye(3))
-            inside = np.ix_(range(len(omega)), free, free)
+            inside = np.ix_(np.arange(len(omega)), free, free)
             moved[:, free] = np.linalg.solve(impedance[inside], self.excitation[:, free, None])[:, :, 0]
             now = np.abs(moved) * (omega * self.table.wave_amplitude)[:, None]
             if np.all(np.abs(now - velocity) <= _CLOSE * np.maximum(now, AT_REST)):

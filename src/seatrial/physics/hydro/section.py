@@ -3,7 +3,7 @@
 import itertools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Self
 
@@ -290,8 +290,12 @@ class FloatingSection:
     def hydrodynamics(self, omega: float) -> SectionHydrodynamics:
         """Return `section_hydrodynamics` of the whole body: kg, N and their like."""
         per_length = section_hydrodynamics(self.form, omega, self.axis, self.density)
-        of_body = (self.length * value for value in (per_length.added_mass, per_length.damping, per_length.excitation))
-        return SectionHydrodynamics(*of_body, per_length.radiated_amplitude)
+        return replace(
+            per_length,
+            added_mass=self.length * per_length.added_mass,
+            damping=self.length * per_length.damping,
+            excitation=self.length * per_length.excitation,
+        )
 
     @property
     def inertia(self) -> Array:
