@@ -13,7 +13,7 @@ from measure import Line, machine
 
 from seatrial.core.values import Array
 from seatrial.physics.hydro.excitation import BoxHull, G
-from seatrial_studies.section2d.theory import RHO, LewisForm, SectionMotion, section_hydrodynamics
+from seatrial.physics.hydro.section import FRESH_WATER, MOTIONS, LewisForm, SectionMotion, section_hydrodynamics
 
 LENGTH, STATIONS = 1.0, 24  # m of all hulls, as errors do not depend on it; stations at the middles of slices
 SPEEDS = (0.0, 0.15, 0.3)  # Froude numbers of ships, at rest to fast
@@ -47,7 +47,7 @@ class Hull:
     @property
     def box(self) -> BoxHull:
         """The box with the hull's dimensions and stiffness."""
-        strip = RHO * G * self.beams * LENGTH / STATIONS
+        strip = FRESH_WATER * G * self.beams * LENGTH / STATIONS
         stiffness = float(np.sum(strip)), 0.0, 0.0, float(np.sum(strip * self.places**2))
         return BoxHull(LENGTH, LENGTH / self.slenderness, self.draught, *stiffness)
 
@@ -60,14 +60,12 @@ def hull_forces(hull: Hull, omega: float, U: float) -> tuple[complex, complex]:
     """
     k, omega_e = omega**2 / G, omega + omega**2 / G * U
     x, b, dx = hull.places, hull.beams, LENGTH / STATIONS
-    sections = [
-        section_hydrodynamics(LewisForm.from_dimensions(beam, hull.draught, FULLNESS), omega_e, SectionMotion.HEAVE)
-        for beam in b
-    ]
-    added = np.array([s.added_mass for s in sections])
-    damping = np.array([s.damping for s in sections])
+    sections = [section_hydrodynamics(LewisForm.from_dimensions(beam, hull.draught, FULLNESS), omega_e) for beam in b]
+    heave = MOTIONS.index(SectionMotion.HEAVE)
+    added = np.array([s.added_mass[heave, heave] for s in sections])
+    damping = np.array([s.damping[heave, heave] for s in sections])
     wave = np.exp(-k * hull.draught * FULLNESS) * np.exp(1j * k * x)
-    force = (RHO * G * b + 1j * omega * (damping - U * np.gradient(added, dx)) - omega * omega_e * added) * wave
+    force = (FRESH_WATER * G * b + 1j * omega * (damping - U * np.gradient(added, dx)) - omega * omega_e * added) * wave
     return complex(np.sum(force) * dx), complex(-np.sum(x * force) * dx)
 
 

@@ -3,9 +3,9 @@
     python benchmarks/roll_manoeuvring.py [--family son_nomoto | mmg_roll | abkowitz_roll] [--runs 200]
 
 Two zigzags, two turns and two roll decays under way; each draw adds white noise to positions, heading, heel, velocities
-and rates and estimates all free coefficients, GM and the damping of roll among them, from zero and GM 1 m; those of
-mmg_roll from 30 % off. Whatever is fixed is known. son_nomoto is the container ship S175 as published; what the others
-are is in `problems.rolling_ship`.
+and rates and estimates all free coefficients, GM and the damping of roll among them, from zero and GM 1 m.
+Whatever is fixed is known. son_nomoto is the container ship S175 as published; what the others are is in
+`problems.rolling_ship`.
 """
 
 import argparse
@@ -41,28 +41,16 @@ FAMILIES: Mapping[str, Callable[[], RollingShip]] = {
 }  # fmt: skip
 
 
-_NEAR = 0.3  # share by which coefficients of a similar ship differ at most; chosen
-
-
 def without_guess(truth: Model) -> Model:
     """The model with its free coefficients at zero and GM 1 m, a value that fits no ship in particular."""
     return truth.with_values(dict.fromkeys(truth.parameters.free_names, 0.0) | {"GM": 1.0})
-
-
-def of_a_similar_ship(truth: Model) -> Model:
-    """The model with each free coefficient off by up to 30 %."""
-    factors = np.random.default_rng(0).uniform(1.0 - _NEAR, 1.0 + _NEAR, len(truth.parameters.free))
-    return truth.with_values(
-        {p.name: p.value * f for p, f in zip(truth.parameters.free, factors.tolist(), strict=True)}
-    )
 
 
 def estimated(ship: RollingShip, count: int) -> Draws:
     """Return what estimates of so many draws missed."""
     clean = ship.runs()
     draws = Draws.of(ship.model, bound(ship.model, ship.length, clean, ship.noise))
-    # from zero two of three draws of the MMG end in another optimum: the weak form's values diverge
-    fitted = of_a_similar_ship(ship.model) if ship.model.name == "mmg_roll" else without_guess(ship.model)
+    fitted = without_guess(ship.model)
     draws.add(range(count), lambda rng: [ship.noisy(run, rng) for run in clean], fitted, ship.length, SETTINGS)
     return draws
 

@@ -29,6 +29,7 @@ PICTURE_FUNCTIONS: tuple[Callable[[], Figure], ...] = (
 COMPILED: tuple[Callable[[], Figure], ...] = (exports.export_c99, exports.export_fmu)
 RECORDED: tuple[Callable[[], Figure], ...] = (
     results.kvlcc2_zigzag, results.kvlcc2_series, results.kvlcc2_coefficients, results.kvlcc2_turn,
+    results.section_waves,
 )  # fmt: skip
 
 

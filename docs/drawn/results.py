@@ -25,8 +25,22 @@ import seatrial as st
 from seatrial.control.controller import components
 from seatrial.control.front import Effort
 from seatrial.control.tune import tune
+from seatrial.estimation.sea import WaveResponses, fit_section
 from seatrial.physics.simulate import replay
 from seatrial.reporting.figures.control_charts import loop_diagram
+from seatrial_studies.section2d.analysis import analyse_records
+from seatrial_studies.section2d.responses import (
+    BEAM,
+    DEPTH,
+    DRAUGHT,
+    GM,
+    KG,
+    LENGTH,
+    MASS,
+    ROLL_RADIUS,
+    SWAY_STIFFNESS,
+    data_folder,
+)
 
 
 def kvlcc2_zigzag() -> Figure:
@@ -74,6 +88,30 @@ def kvlcc2_turn() -> Figure:
         turn = st.simulate(fit.model, f"turning-circle:{side}", inputs=inputs)
         track(axes, turn, fit.ship.length, {"color": look})
     axes.set_title("what was asked: turning circles of 35 deg, model scale")
+    return figure
+
+
+def section_waves() -> Figure:
+    """A measured section, free in sway and heave: every second wave period fitted, the others left out."""
+    found = analyse_records(data_folder(), quick=True, report_progress=None).responses
+    runs = [r for r in found if r.run.scenario == 4 and r.run.period > 0.85]
+    omega = np.array([r.run.omega for r in runs])
+    table = WaveResponses(
+        "sway-heave", omega, np.array([r.wave_amplitude for r in runs]), {"z": np.array([-r.heave for r in runs])}
+    )
+    particulars = {"L": LENGTH, "B": BEAM, "d": DRAUGHT, "m": MASS, "KG": KG, "k_xx": ROLL_RADIUS, "GM": GM}
+    springs = {"c22": sum(SWAY_STIFFNESS) / 2.0, "gain_z": 1.1, "d33": 100.0}
+    is_fitted = np.searchsorted(np.unique(np.round(omega, 2)), np.round(omega, 2)) % 2 == 0
+    free = ("gain_z", "delay", "a33", "d33")
+    fit = fit_section(st.Ship("section", particulars), table.rows(is_fitted), ("sway", "heave"), free, springs, DEPTH)
+    fine = np.linspace(4.8, 7.1, 80)  # rad/s
+    curve = fit.predicted(WaveResponses("curve", fine, np.full(80, 0.0117), {"z": np.ones(80, dtype=complex)}))["z"]
+    figure, axes = plt.subplots()
+    axes.plot(2.0 * np.pi / fine, np.abs(curve), **SIMULATED, label="fitted model")
+    for chosen, look, label in ((is_fitted, GREY, "measured, fitted"), (~is_fitted, ORANGE, "measured, left out")):
+        axes.plot(2.0 * np.pi / omega[chosen], np.abs(table.motions["z"][chosen]), "o", color=look, label=label)
+    axes.set(xlabel="wave period [s]", ylabel="heave over wave amplitude, 1")
+    axes.legend()
     return figure
 
 

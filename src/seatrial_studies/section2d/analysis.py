@@ -325,7 +325,7 @@ def _alternative_dampings(
         one, two = (_with_damping(fit.mode, free) for fit in (heave, roll))
         return fit_mode(one, responses), fit_mode(two, responses)
 
-    return (("linear", *fit_with("linear")), ("none but of waves", *fit_with("")))
+    return (("linear", *fit_with("linear_damping")), ("none but of waves", *fit_with("")))
 
 
 def _with_damping(mode: Mode, free: str) -> Mode:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.core.values import Array, InputError
+from seatrial.physics.hydro.section import MOTIONS, SectionMotion, section_hydrodynamics
 from seatrial_studies.section2d.responses import (
     FORM,
     HEAVE_PERIOD,
@@ -24,7 +25,6 @@ from seatrial_studies.section2d.responses import (
     natural_period,
     relative_difference,
 )
-from seatrial_studies.section2d.theory import SectionMotion, section_hydrodynamics
 
 # One motion in regular waves: potential theory with a few corrections, fitted to complex amplitudes of many periods.
 
@@ -330,8 +330,12 @@ ROLL = Mode(
 
 def theory_of_model(motion: SectionMotion, omega: float, sign: float = 1.0) -> SectionTheory:
     """Of the whole model."""
-    one = section_hydrodynamics(FORM, omega, motion, ROLL_AXIS)
-    return SectionTheory(one.added_mass * LENGTH, one.damping * LENGTH, sign * one.excitation * LENGTH)
+    one, k = section_hydrodynamics(FORM, omega, ROLL_AXIS), MOTIONS.index(motion)
+    return SectionTheory(
+        LENGTH * float(one.added_mass[k, k]),
+        LENGTH * float(one.damping[k, k]),
+        LENGTH * sign * complex(one.excitation[k]),
+    )
 
 
 def observation(mode: Mode, response: SectionResponse) -> MeasuredResponse:

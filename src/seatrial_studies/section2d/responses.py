@@ -14,7 +14,7 @@ from seatrial.core.values import Array, InputError, Record
 from seatrial.data.check import with_standard_signs
 from seatrial.data.read import ColumnSpec, Layout, read_record
 from seatrial.physics.hydro import group_velocity, wavenumber
-from seatrial_studies.section2d.theory import LewisForm
+from seatrial.physics.hydro.section import LewisForm
 
 # What is documented of the flume, the section and its holding; how the files are laid out.
 

@@ -7,6 +7,7 @@ import numpy as np
 from seatrial.core.results import Curve, Figure, Table
 from seatrial.core.values import Array
 from seatrial.physics.hydro import wavenumber
+from seatrial.physics.hydro.section import haskind_damping
 from seatrial_studies.section2d.analysis import (
     SectionAnalysis,
     clock_table,
@@ -17,7 +18,6 @@ from seatrial_studies.section2d.analysis import (
 )
 from seatrial_studies.section2d.modes import HEAVE, MeasuredResponse, ModeFit, observation, theory_of_model
 from seatrial_studies.section2d.responses import DEPTH, HEIGHTS, LENGTH, RIG_DAMPING, STEADY_TIMING, SWAY_STIFFNESS
-from seatrial_studies.section2d.theory import haskind_damping
 
 # Tables of the study.
 

@@ -8,9 +8,7 @@ from seatrial_studies.section2d.analysis import SectionAnalysis, camera_gain
 from seatrial_studies.section2d.modes import ModeFit, theory_of_model
 from seatrial_studies.section2d.responses import (
     AREA_COEFFICIENT,
-    BEAM,
     DEPTH,
-    DRAUGHT,
     FORM,
     GM,
     HEIGHTS,
@@ -133,13 +131,8 @@ def metacentric_height_claim(analysis: SectionAnalysis) -> Claim:
 
 
 def form_metacentric_height() -> float:
-    """GM [m] of the Lewis form with the documented centre of gravity: KB + BM - KG."""
-    nodes, weights = np.polynomial.legendre.leggauss(60)
-    theta, weights = 0.25 * np.pi * (nodes + 1.0), 0.25 * np.pi * weights
-    (x, y), (_, dy) = FORM.points(theta), FORM.tangents(theta)
-    area = -2.0 * float(np.sum(weights * x * dy))
-    depth = -2.0 * float(np.sum(weights * x * y * dy)) / area
-    return DRAUGHT - depth + BEAM**3 / 12.0 / area - KG
+    """GM [m] of the Lewis form with the documented centre of gravity."""
+    return FORM.metacentre - KG
 
 
 def wave_heights_claim(analysis: SectionAnalysis) -> Claim:

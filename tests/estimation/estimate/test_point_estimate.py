@@ -11,6 +11,7 @@ from seatrial.estimation.estimate.point_estimate import (
     COLOUR_ROUNDS,
     NEAR_ENOUGH,
     PointEstimate,
+    fallen_inflation,
     fit_output_error,
     residual_correlation,
     residual_spread,
@@ -170,3 +171,20 @@ def test_effective_numbers_are_held_after_the_first_rounds() -> None:
     settled = fit_output_error(problem, *start, {})
     assert begun.problem.inflation is not None
     np.testing.assert_array_equal(settled.problem.inflation, begun.problem.inflation)
+
+
+@pytest.mark.parametrize(
+    ("held", "current", "expected"),
+    [
+        ([20.0, 3.0], [1.4, 2.0], [1.4, 3.0]),
+        ([20.0, 3.0], [50.0, 6.0], [20.0, 3.0]),
+        ([20.0, 3.0], None, None),
+        (None, [4.0, 1.0], None),
+    ],
+)
+def test_effective_numbers_only_rise_and_only_where_residuals_whiten_much(
+    held: list[float] | None, current: list[float] | None, expected: list[float] | None
+) -> None:
+    made = fallen_inflation(*(None if x is None else np.array(x) for x in (held, current)))
+    assert (made is None) == (expected is None)
+    np.testing.assert_array_equal([] if made is None else made, expected or [])

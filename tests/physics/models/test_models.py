@@ -24,7 +24,8 @@ from seatrial.physics.models.published import (
     theoretical_coefficients,
 )
 
-MIRRORED = {"v", "r", "r_rest", "psi", "y0", "phi", "p", "delta", "alpha_w", "alpha_f", "wind_direction"}
+MIRRORED = {"v", "r", "r_rest", "psi", "y0", "phi", "p", "delta", "alpha_w", "alpha_f", "F2", "M4",
+            "wind_direction"}  # fmt: skip
 # parameters that change sign in the mirror; those split by side change places
 ODD = {"Y_0", "N_0", "Y_T", "N_T", "Y_dd", "N_dd", "Y_nn", "Y_nu", "N_nn", "N_nu", "delta_0", "current_east",
        "phi_0"}  # fmt: skip
@@ -51,6 +52,8 @@ def filled(name: str, rng: np.random.Generator) -> Model:
             .applied_to(model)
             .with_values({"lift_1": 2e6, "x_f1": -25.0, "lift_2": 1e6, "x_f2": 20.0})
         )
+    if name == "section":
+        return model.with_values({p.name: float(rng.uniform(0.5, 1.5)) for p in model.parameters} | {"I_x": 5.0})
     small = {p.name: float(rng.normal(scale=0.01)) for p in model.parameters if p.value == 0.0}
     return model.with_values(small | ({"A_T": 0.3, "A_L": 1.1, "U_0": 0.02} if name in known else {}))
 

@@ -11,15 +11,24 @@ import pytest
 
 from seatrial import api
 from seatrial.core.results import Verdict
-from seatrial.core.values import InputError
+from seatrial.core.values import InputError, Ship
 from seatrial.data.folder.document import document, strict_json
+from seatrial.estimation.sea import WaveResponses, fit_section
 from seatrial_studies.section2d import study, verdicts
 from seatrial_studies.section2d.analysis import SectionAnalysis, analyse_records
-from seatrial_studies.section2d.modes import jackknife_error, split_periods
+from seatrial_studies.section2d.modes import CROSS_AXIS, HEAVE, REPEATABILITY, jackknife_error, split_periods
 from seatrial_studies.section2d.responses import (
+    BEAM,
+    DEPTH,
+    DRAUGHT,
+    GM,
     HEAVE_PERIOD,
     HEIGHTS,
+    KG,
+    LENGTH,
+    MASS,
     ROLL_PERIOD,
+    ROLL_RADIUS,
     STEADY_TIMING,
     SWAY_STIFFNESS,
     read_periods,
@@ -43,6 +52,27 @@ def test_periods_held_out_between_trained_ones_are_predicted(made: SectionAnalys
         assert len({s.response.run.period_index for s in held}) >= 2
 
 
+def test_a_section_of_ones_own_is_predicted_at_periods_left_out(made: SectionAnalysis) -> None:
+    """Heave with free sway, by the table alone: each period from 0.9 s on that lies between others."""
+    runs = [r for r in made.responses if r.run.scenario == HEAVE.scenario and r.run.period > 0.75]
+    runs.sort(key=lambda r: -r.run.period)
+    leaks = np.array([CROSS_AXIS * abs(r.sway / r.heave) for r in runs])
+    table = WaveResponses(
+        "sway-heave", np.array([r.run.omega for r in runs]), np.array([r.wave_amplitude for r in runs]),
+        {"z": np.array([-r.heave for r in runs])}, {"z": np.hypot(REPEATABILITY, leaks)},
+    )  # fmt: skip
+    particulars = {"L": LENGTH, "B": BEAM, "d": DRAUGHT, "m": MASS, "KG": KG, "GM": GM, "k_xx": ROLL_RADIUS}
+    ship, begun = Ship("section", particulars), {"gain_z": 1.1, "d33": 100.0, "c22": np.mean(SWAY_STIFFNESS)}
+    indices = np.array([r.run.period_index for r in runs])
+    for index in (4, 6, 8):
+        fit = fit_section(
+            ship, table.rows(indices != index), ("sway", "heave"), ("gain_z", "delay", "a33", "d33"), begun, DEPTH
+        )
+        amplitude, phase = fit.errors_of(table.rows(indices == index))["z"]
+        assert np.max(np.abs(amplitude)) <= 1.5
+        assert np.max(np.abs(phase)) <= 1.5
+
+
 def test_natural_periods_are_the_documented_ones(made: SectionAnalysis) -> None:
     assert made.heave.period == pytest.approx(HEAVE_PERIOD, rel=0.01)
     assert made.roll.period == pytest.approx(ROLL_PERIOD, rel=0.01)
@@ -50,7 +80,7 @@ def test_natural_periods_are_the_documented_ones(made: SectionAnalysis) -> None:
 
 def test_nothing_of_a_held_out_period_trains(made: SectionAnalysis) -> None:
     """Changing what was measured there leaves the trained oscillator as it is."""
-    from seatrial_studies.section2d.modes import HEAVE, fit_mode
+    from seatrial_studies.section2d.modes import fit_mode
 
     held = {s.response.run.name for s in made.heave.scores if not s.is_training}
     bent = [replace(r, heave=1.1 * r.heave) if r.run.name in held else r for r in made.responses]

@@ -52,12 +52,12 @@ from seatrial.estimation.estimate.settings import (
     INITIAL_STATE_SHIP_LENGTHS,
     JUDGED_SHIP_LENGTHS,
     SEGMENT_SHIP_LENGTHS,
-    WEAK_FORM_SHIP_LENGTHS,
     WHITE_INFLATION,
     EstimatorOptions,
     IntervalMethod,
     characteristic_time,
     resolved_time,
+    weak_form_half_width,
 )
 from seatrial.estimation.estimate.start import (
     SearchStart,
@@ -363,7 +363,8 @@ def _first_starts(
     """Where a search begins that nothing is known of: by the weak form, and by several searches where it takes them."""
     if report_progress:
         report_progress("start values: weak form")
-    begun = SeveralStarts(find_start(problem, runs.records, WEAK_FORM_SHIP_LENGTHS * unit), ())
+    half_width = weak_form_half_width(problem.model, runs.records, unit)
+    begun = SeveralStarts(find_start(problem, runs.records, half_width), ())
     if settings.robust:
         begun = replace(begun, start=replace(begun.start, problem=replace(begun.start.problem, huber=HUBER_LIMIT)))
     count = number_of_starts(problem.model, settings.starts)

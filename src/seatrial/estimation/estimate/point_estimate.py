@@ -136,6 +136,8 @@ _FEW_EVALUATIONS = 12
 COLOUR_ROUNDS = 2
 """Rounds in which effective numbers of samples follow the residuals, before they are held; chosen: the first has the
 residuals of the start, the second those of a model that nearly fits (benchmarks/estimation_folds.py)."""
+_WHITENED = 0.5
+"""Share of its held inflation to which that of a channel falls where the second round did not nearly fit; chosen."""
 # of a channel, over its largest value
 _ROUNDING = 1e-9
 
@@ -232,7 +234,8 @@ def fit_output_error(
     Coloured channels count as their effective number of samples throughout (`OutputError.inflation`). These follow the
     residuals in the first `colour_rounds` rounds and are held after them, 0: as the problem has them. All further
     rounds then decrease one objective, the likelihood with the noise concentrated out (`ConcentratedLikelihood`):
-    followed throughout, a worse fit is more correlated, counts less against the priors, and fits worse still.
+    followed throughout, a worse fit is more correlated, counts less against the priors, and fits worse still. Where a
+    search that began far off fits later than that, the inflation falls with its residuals, and never rises again.
 
     Args:
         further_searches: begun anew where the evaluations of the last one ran out, at most.
@@ -250,15 +253,15 @@ def fit_output_error(
         noise = np.where(
             np.isfinite(stated_noise), stated_noise, residual_spread(estimate.problem, estimate.residuals())
         )
+        inflation = estimate.problem.inflation
+        if colour_rounds:
+            current = effective_inflation(residual_correlation(estimate.problem, estimate.residuals())[1])
+            inflation = current if k < colour_rounds else fallen_inflation(inflation, current)
         again = replace(
             problem,
             noise=noise,
             population=estimate.population if problem.unknowns_per_session else None,
-            inflation=(
-                effective_inflation(residual_correlation(estimate.problem, estimate.residuals())[1])
-                if k < colour_rounds
-                else estimate.problem.inflation
-            ),
+            inflation=inflation,
             substeps=substeps,
         )
         settled = _is_settled(estimate.problem, again)
@@ -307,6 +310,15 @@ def effective_inflation(inflation: Array) -> Array | None:
     """Return the inflation of the channels that are not white, (ny,); None where all are."""
     coloured = inflation > WHITE_INFLATION
     return np.where(coloured, inflation, 1.0) if np.any(coloured) else None
+
+
+def fallen_inflation(held: Array | None, current: Array | None) -> Array | None:
+    """Return the held inflation, (ny,), with the current one of channels that have become much whiter."""
+    if held is None:
+        return None
+    present = np.ones(len(held)) if current is None else current
+    fallen = np.where(present <= _WHITENED * held, present, held)
+    return fallen if np.any(fallen > 1.0) else None
 
 
 def _is_settled(before: OutputError, after: OutputError) -> bool:

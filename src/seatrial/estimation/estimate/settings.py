@@ -128,6 +128,22 @@ def resolved_time(
     return max(own, SAMPLES_OF_CHANGE * _slowest_step(model, records)) if model.has_course and own > 0.0 else own
 
 
+def weak_form_half_width(model: Model, records: Sequence[Record], unit: float) -> float:
+    """Return the half width [s] of the weak form's windows; unit: the ship's characteristic time [s].
+
+    Of a steered ship that rolls they are no wider than those of roll alone: a window as wide as its period, that of
+    the record with the largest roll rate, averages roll away.
+    """
+    half = WEAK_FORM_SHIP_LENGTHS * unit
+    rates = [(np.nan_to_num(record["p"] - np.nanmean(record["p"])), record.dt) for record in records if "p" in record]
+    if not (model.has_course and "p" in model.states and rates):
+        return half
+    largest, dt = max(rates, key=lambda rate: float(np.std(rate[0])))
+    if not np.any(largest):
+        return half
+    return min(half, WEAK_FORM_SHIP_LENGTHS * PERIOD_SHARE * _strongest_period(largest, dt, 1))
+
+
 def _slowest_step(model: Model, records: Sequence[Record]) -> float:
     """Time [s] between readings of the motion that is read most seldom, the median over the records."""
     steps = []

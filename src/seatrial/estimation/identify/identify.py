@@ -18,7 +18,7 @@ from seatrial.estimation.estimate.criterion_choice import is_explained
 from seatrial.estimation.estimate.fit import refuse_roll_in_unmeasured_waves, refuse_unmeasured_waves
 from seatrial.estimation.estimate.plausibility import OutsidePhysicsError
 from seatrial.estimation.estimate.point_estimate import force_consistency
-from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS
+from seatrial.estimation.estimate.settings import weak_form_half_width
 from seatrial.estimation.identify.assembled_fit import assembled_fit
 from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines, with_term_selection
 from seatrial.estimation.identify.identification import (
@@ -199,7 +199,7 @@ def identify(
     fit = replace(fit, method=replace(fit.method, name=method.value), findings=(*errors, *fit.findings))
     if not compare or situation is Situation.UNKNOWN_WAVES:  # no input, so that there is nothing to regress on
         return fit
-    window = WEAK_FORM_SHIP_LENGTHS * task.resolved_time
+    window = weak_form_half_width(task.trial.model, task.runs.records, task.resolved_time)
     fit = with_baselines(fit, task.runs.records, window, report_progress, trial.compare.svr)
     if trial.model.is_affine and situation is Situation.RECORDED_WAVES:
         fit = with_search_baselines(fit, trial, seed, report_progress)
@@ -291,7 +291,7 @@ def _published_estimate(
     trial, method = task.trial, task.trial.estimate.method
     if method.is_search:
         return estimate_by_search(trial, *_starts(task, reference), task.options.seed, report_progress)
-    window = WEAK_FORM_SHIP_LENGTHS * task.resolved_time
+    window = weak_form_half_width(task.trial.model, task.runs.records, task.resolved_time)
     return estimate_by_regression(trial.model, task.runs.records, method, window, trial.compare.svr)
 
 

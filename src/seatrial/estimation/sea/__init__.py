@@ -1,4 +1,4 @@
-"""The sea from the motions of the ship in it: spectra of stretches, and the wave spectrum that explains them."""
+"""The sea from the motions of the ship in it: spectra and the waves that explain them; sections in regular waves."""
 
 from seatrial._lazy import export_lazily
 

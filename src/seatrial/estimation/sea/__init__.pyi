@@ -14,3 +14,5 @@ from seatrial.estimation.sea.sea_likelihood import TransformBins as TransformBin
 from seatrial.estimation.sea.sea_likelihood import encounter_matrix as encounter_matrix
 from seatrial.estimation.sea.sea_likelihood import BIN_STRIDE as BIN_STRIDE, HEADING_CELL as HEADING_CELL
 from seatrial.estimation.sea.sea_likelihood import MotionSpectrum as MotionSpectrum, SeaLikelihood as SeaLikelihood
+from seatrial.estimation.sea.section_waves import SectionFit as SectionFit, WaveResponses as WaveResponses
+from seatrial.estimation.sea.section_waves import fit_section as fit_section, read_responses as read_responses

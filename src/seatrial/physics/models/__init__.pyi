@@ -14,6 +14,7 @@ from seatrial.physics.models.published import PARAMETER_SETS as PARAMETER_SETS, 
 from seatrial.physics.models.registry import MODELS as MODELS, model_from_file as model_from_file
 from seatrial.physics.models.registry import model_named as model_named
 from seatrial.physics.models.roll import roll as roll
+from seatrial.physics.models.section import section as section
 from seatrial.physics.models.son_nomoto import son_nomoto as son_nomoto
 from seatrial.physics.models.waterjet import WATERJET_COEFFICIENTS as WATERJET_COEFFICIENTS, waterjet as waterjet
 from seatrial.physics.models.waterjet import waterjet_candidates as waterjet_candidates

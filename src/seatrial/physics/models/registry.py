@@ -49,6 +49,7 @@ MODELS: dict[str, Callable[[], "Model"]] = {
     "heave_pitch_zoh": lambda: models.heave_pitch_zoh(),
     "heave_pitch_strip": lambda: models.heave_pitch_strip(),
     "roll": lambda: models.roll(),
+    "section": lambda: models.section(),
     "thrusters": _thrusters,
 }
 LAYOUT_MODELS: dict[str, Callable[[str], "Model"]] = {"thrusters": _thrusters}

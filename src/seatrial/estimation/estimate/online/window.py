@@ -11,7 +11,7 @@ from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate.assemble import Runs, output_error_problem
 from seatrial.estimation.estimate.online.recursive import DivergenceGuard, Forgetting, GaussianState, RecursiveFilter
 from seatrial.estimation.estimate.point_estimate import PointEstimate, residual_correlation, residual_spread
-from seatrial.estimation.estimate.settings import WEAK_FORM_SHIP_LENGTHS, WHITE_INFLATION, resolved_time
+from seatrial.estimation.estimate.settings import WHITE_INFLATION, resolved_time, weak_form_half_width
 from seatrial.estimation.estimate.start import find_start
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.information.whiteness import whiteness_p
@@ -244,7 +244,7 @@ def cold_start(model: Model, runs: Runs, settings: EstimateSettings) -> WindowEs
     """
     problem = output_error_problem(model, runs, np.inf, settings)
     unit = resolved_time(model, runs.records, runs.length, settings.segment_s)
-    first = find_start(problem, runs.records, WEAK_FORM_SHIP_LENGTHS * unit)
+    first = find_start(problem, runs.records, weak_form_half_width(model, runs.records, unit))
     own = first.problem.start(), first.problem.measured_initial_states()
     known = better_estimate(
         *(
