@@ -7,15 +7,18 @@ from itertools import combinations
 import numpy as np
 
 from seatrial.core.values import Record
+from seatrial.core.values.notation import TWIN_DIFFERENCES
 from seatrial.data.check.phases import is_free_decay
 from seatrial.data.check.water_speed import SpeedAndCurrent, speed_through_water
 from seatrial.data.draft.ship_estimates import UNSTATED, EstimatedValue, StatedSize, hull_rudder_propeller, wind_areas
 from seatrial.physics.manoeuvres.track import speed
 from seatrial.physics.models.published import SYMMETRIC
+from seatrial.physics.models.registry import family_of
 
 # The model with which a drafted trial begins, by what the logs hold and what is stated of the craft.
 
-_THRUSTERS, _ROLL, _SHIP, _MMG, _WAVES = "thrusters", "roll", "abkowitz", "mmg", "heave_pitch"
+_THRUSTERS, _ROLL, _SHIP, _WAVES = "thrusters", "roll", "abkowitz", "heave_pitch"
+_MMG, _TWIN = "mmg", "mmg_twin"
 _FINS = "alpha_f"
 _WAVE, _MOTION_IN_WAVES = "zeta", frozenset({"z", "theta"})
 _ROLL_MOTION = frozenset({"phi", "p"})
@@ -33,6 +36,7 @@ _MMG_TERMS = (
 _DRIFT = tuple(map(frozenset, (("u", "v"), ("sog", "cog", "psi"), ("x0", "y0", "psi"), ("lat", "lon", "psi"))))
 _APPROACH_S = 5.0  # s from the start of a run whose mean speed is that of the approach; chosen
 _SLOW_START = 0.7  # of the speed that a run reaches, below which its start is no approach; chosen
+_APART = 0.1  # of the largest mean of two rudders or shafts, from which on their difference steers; chosen
 _STEADY_RATE = 0.1  # of its median, by which the rate of a propeller may vary that is steady; chosen
 
 
@@ -81,7 +85,12 @@ class StartingModel:
     @property
     def has_propeller(self) -> bool:
         """Whether it has forces of hull, propeller and rudder, each its own."""
-        return self.name == _MMG
+        return family_of(self.name) == _MMG
+
+    @property
+    def has_two_screws(self) -> bool:
+        """Whether it has two screws, each with a rudder behind it."""
+        return self.name == _TWIN
 
     @property
     def has_forces_of_a_ship(self) -> bool:
@@ -183,11 +192,13 @@ def _steered_model(
     falls = len(peaks) > 1 and max(peaks) > _AMPLITUDE_RATIO * min(peaks)
     approach = _approach_speed(records)
     if size.length and approach and any(one <= symbols for one in _DRIFT):
-        particulars = () if has_jet else hull_rudder_propeller(size, approach, _advance(records))
+        screws = 2 if _differ(records) else 1
+        particulars = () if has_jet else hull_rudder_propeller(size, approach, _advance(records), screws)
         if particulars:
+            name = _MMG if screws == 1 else _TWIN
             why = "forces of hull, propeller and rudder; abkowitz, without the last two, holds within the runs only"
             reason = "hull, wake, thrust and the flow at the rudder, near formulas by priors as wide as their errors"
-            return StartingModel(_MMG, why, _MMG_TERMS, reason, ("delta",), approach, particulars)
+            return StartingModel(name, why, _MMG_TERMS, reason, ("delta",), approach, particulars)
         if _is_rate_steady(records):
             why = "forces over drift, yaw rate, rudder; mmg goes farther with a propeller's rate (init --gear)"
             reason = f"the linear terms{', and the damping of fast turns, as rudder angles differ' if falls else ''}"
@@ -214,6 +225,15 @@ def _speed_ahead(record: Record) -> float:
     return start if start > _SLOW_START * reached else reached
 
 
+def _differ(records: Sequence[Record | None]) -> bool:
+    """Whether two rudders and two shafts are recorded, and a run shows one of these pairs apart."""
+    pairs = [(name, TWIN_DIFFERENCES[name]) for name in ("delta", "n")]
+    known = [record for record in records if record is not None]
+    if not all(difference in record for record in known for _, difference in pairs):
+        return False
+    return any(_peak(record[apart]) > _APART * _peak(record[mean], 0.0) for record in known for mean, apart in pairs)
+
+
 def _advance(records: Sequence[Record | None]) -> float:
     """The median over the runs of the way [m] that is made in a turn of the propeller; 0 where it is not recorded."""
     used = [record for record in records if record is not None and "n" in record]
@@ -233,8 +253,9 @@ def _is_rate_steady(records: Sequence[Record | None]) -> bool:
     return max(middle - low, high - middle) <= _STEADY_RATE * abs(middle)
 
 
-def _peak(rudder: np.ndarray) -> float:
-    return max(float(np.percentile(np.abs(rudder - np.median(rudder)), _PEAK_PERCENTILE)), 1e-6)  # rad, for a ratio
+def _peak(rudder: np.ndarray, middle: float | None = None) -> float:
+    middle = float(np.median(rudder)) if middle is None else middle
+    return max(float(np.percentile(np.abs(rudder - middle), _PEAK_PERCENTILE)), 1e-6)  # rad, for a ratio
 
 
 # The rate at which residuals of a ship are taken: samples far closer than a ship moves cost time and add little.

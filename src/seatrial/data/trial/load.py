@@ -185,6 +185,7 @@ def trial_of_tables(
         base = home / expand_variables(file.data.folder)
         excitation = excitation_of(file.excitation, ship, model, base)
         runs = runs_of(file.records, file.data.folder, home, excitation, ship.length, declared) if file.records else ()
+        runs = tuple(run.with_differences(model.input_names) for run in runs)
         refuse_used_records(runs, results)
         if runs and file.follow is None:
             require_training_run(runs)

@@ -47,9 +47,9 @@ SHARE_SPREAD: Mapping[str, float] = {
     **dict.fromkeys(("Y_v", "Y_r", "N_v", "N_r", "R_0"), 1.0), **dict.fromkeys(("m_y", "J_z"), 0.5),
     **dict.fromkeys(("w_P", "t_P", "gamma_R"), 0.5),
 }  # fmt: skip
-"""Standard deviation of each share about 1; chosen: exact flow past elliptic sections gives the tanker KVLCC2 0.6 of the
-change of m_y by Li & Wu at h/d 1.5, half of it at 2 and a fifth at 5, and by slender-body theory Y_v would change six
-times as much as by Kijima."""
+"""Standard deviation of each share about 1; chosen: exact flow past elliptic sections gives the tanker KVLCC2 0.6 of
+the change of m_y by Li & Wu at h/d 1.5, half of it at 2 and a fifth at 5, and by slender-body theory Y_v would change
+six times as much as by Kijima."""
 
 
 def share_name(coefficient: str) -> str:
