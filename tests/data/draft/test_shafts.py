@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 from tests.data.draft.test_draft import write
 from tests.onboard.sentences import sentence
 
@@ -104,3 +105,25 @@ def test_rates_of_thrusters_whose_commands_are_recorded_are_not_two_more_thruste
     write(tmp_path / "usv.csv", columns)
     found = {one.symbol: one for one in guess_columns(survey_log(tmp_path / "usv.csv")) if one.is_used}
     assert {"command_1", "command_2"} <= set(found) and not {"rpm_1", "rpm_2", "n"} & set(found)
+
+
+@pytest.mark.parametrize(("apart", "model"), [(0.0, "mmg"), (40.0, "mmg_twin")])
+def test_two_rudders_and_shafts_that_act_apart_are_those_of_a_model_with_both(
+    tmp_path: Path, apart: float, model: str
+) -> None:
+    time = np.arange(0.0, 300.0, 1.0)
+    rudder = 10.0 * np.sign(np.sin(0.05 * time))
+    columns = {
+        "time": time,
+        "heading [deg]": np.degrees(np.cumsum(np.cumsum(0.0001 * rudder))),
+        "u [m/s]": 7.0 + 0 * time,
+    }
+    columns |= {"v [m/s]": 0.01 * rudder, "rudder port [deg]": rudder, "rudder stbd [deg]": rudder}
+    steady, shaft = 130.0 + np.sin(time), apart * np.sign(np.sin(0.03 * time))
+    columns |= {"shaft stbd [rpm]": steady - shaft, "shaft port [rpm]": steady + shaft}
+    write(tmp_path / "ferry.csv", columns)
+    text = draft_trial(tmp_path / "ferry.csv", length=140.0).text
+    assert f'name = "{model}"' in text
+    assert 'channels.n = { column = "shaft port [rpm]", twin = "shaft stbd [rpm]"' in text
+    assert ("y_P = " in text) == (model == "mmg_twin")
+    assert ('"twin_screws"' in text) == (model == "mmg_twin")
