@@ -4,6 +4,8 @@ from collections.abc import Collection
 from dataclasses import dataclass, replace
 from typing import Literal
 
+import numpy as np
+
 from seatrial.core.values import Array, InputError, channel_hint, quantity, si_unit
 from seatrial.core.values.arrays import Between, Kind
 from seatrial.core.values.notation import NOTATION, TWIN_DIFFERENCES, Quantity, positive_direction
@@ -92,6 +94,18 @@ class ColumnSpec:
     def is_difference(self) -> bool:
         """Whether it is what two columns differ by, the first less its twin."""
         return self.symbol in TWIN_DIFFERENCES.values()
+
+    def of_twins(self, first: Array, second: Array) -> Array:
+        """Return half the sum of the cells of two columns (n,), or what they differ by where that is the channel.
+
+        Where one is empty the other counts for both.
+        """
+        pair = np.stack([first, second])
+        filled = np.isfinite(pair)
+        is_empty = ~filled.any(axis=0)
+        if self.is_difference:
+            return np.where(is_empty, np.nan, np.where(filled.all(axis=0), first - second, 0.0))
+        return np.where(filled, pair, 0.0).sum(axis=0) / np.where(is_empty, np.nan, filled.sum(axis=0))
 
     @property
     def difference(self) -> "ColumnSpec":

@@ -190,6 +190,7 @@ def trial_of_tables(
         if runs and file.follow is None:
             require_training_run(runs)
         stream = None if file.follow is None else stream_of(file.follow, base, home, excitation, ship.length, declared)
+        stream = None if stream is None else stream.with_differences(model.input_names)
         proposal = resolved_proposal(file.proposal, stream, home)
         if file.design is not None:
             refuse_unsuitable(file.design, model, ship.length)
