@@ -161,6 +161,7 @@ def _prior_lines(model: StartingModel) -> list[str]:
         for formula in (
             *_FORMULAS,
             *(["twin_screws"] if model.has_two_screws else []),
+            *(["shallow"] if model.is_in_shallow_water else []),
             *(["wind"] if model.has_wind else []),
         )
     )

@@ -503,6 +503,12 @@ def with_turned_thruster(parts: Sequence[Sequence[ColumnGuess]]) -> tuple[tuple[
     return tuple(tuple(turned if one is steers else one for one in part) for part in parts)
 
 
+def without_depth(parts: Sequence[Sequence[ColumnGuess]]) -> tuple[tuple[ColumnGuess, ...], ...]:
+    """Return the guesses without the depth of water so deep that no model needs it."""
+    why = "the water is deep, or the model has no depth"
+    return tuple(tuple(_unused(g, why) if g.symbol == "depth" else g for g in part) for part in parts)
+
+
 def _unused(guess: ColumnGuess, reason: str) -> ColumnGuess:
     return replace(guess, is_used=False, unused_because=guess.unused_because or reason)
 

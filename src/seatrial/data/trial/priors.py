@@ -76,8 +76,8 @@ FORMULAS: dict[str, Callable[[HullForm, Ship], EmpiricalEstimate]] = {
     "propulsion": _propulsion,
     "displacement": _displacement,
     "twin_screws": _twin_screws,
-    "shallow": lambda _, __: EmpiricalEstimate(
-        dict.fromkeys(map(share_name, SHARE_SPREAD), 1.0),
+    "shallow": lambda form, _: EmpiricalEstimate(
+        {**dict.fromkeys(map(share_name, SHARE_SPREAD), 1.0), "C_b": form.C_b},
         f"{KIJIMA}; {LI_WU}; {FURUKAWA}; spread chosen",
         valid=True,
         limits="any ship",
