@@ -62,12 +62,13 @@ def twin_screw_ship() -> Model:
     values |= {"gamma_R_plus": 0.45, "gamma_R_minus": 0.30, "C_1": 2.0, "C_2_plus": 1.2, "C_2_minus": 1.05}
     ferry = {name: value for name, value in _FERRY.items() if name not in values}
     model = mmg_twin()
-    known = {name: value for name, value in {**values, **ferry}.items() if name in model.parameters}
-    return model.with_values(known, source="formulas; chosen")
+    parameters = {name: value for name, value in {**values, **ferry}.items() if name in model.parameters}
+    return model.with_values(parameters, source="formulas; chosen")
 
 
-# depths over draught of the two sets of trials; shares of the published change that are true; chosen
 DEPTHS = (0.0, 1.5)
+"""Depths over draught of the two sets of trials, 0: deep; chosen."""
+# shares of the published change that are true, 1; chosen
 _TRUE_SHARES = {"Y_v": 1.3, "Y_r": 0.8, "N_v": 1.2, "N_r": 0.9, "R_0": 1.1}
 # speed of the tanker's approach and rate over it [m/s, 1/m]; as of its trials in deep water
 _TANKER_SPEED, _TANKER_RATE = 1.18, 10.4 / 1.18

@@ -86,7 +86,7 @@ def test_equations_in_deep_water_are_those_of_mmg() -> None:
     own = {b.name: b.text for b in mmg_shallow().bindings}
     unchanged = [b.name for b in mmg().bindings if own[b.name] == b.text]
     changed = {b.name for b in mmg().bindings} - set(unchanged)
-    assert changed == {"X_H", "Y_H", "N_H", "w_P", "X_P", "v_R", "M_v", "M_r"}
+    assert changed == {"X_H", "Y_H", "N_H", "w_P", "X_P", "v_R", "M_v", "M_r", "X_m"}
 
 
 def sway_added_mass(breadth: float, depth: float, panels: int = 200) -> float:

@@ -181,9 +181,9 @@ _TABLE = [
     Quantity("bucket", "share of the jet that the reversing bucket sends forward", "1", "none", "astern", "b",
              "bucket_share"),
     *(
-        Quantity(f"{of}_difference", f"{meaning}, port less starboard", unit, "body", positive, rf"\Delta {latex}",
+        Quantity(f"{symbol}_difference", f"{meaning}, port less starboard", unit, "body", positive, rf"\Delta {latex}",
                  f"{name}_difference")
-        for of, meaning, unit, positive, latex, name in (
+        for symbol, meaning, unit, positive, latex, name in (
             ("delta", "rudder or nozzle angle", "rad", "none", r"\delta", "rudder_angle"),
             ("n", "propeller rate", "rps", "starboard", "n", "propeller_rate"),
             ("v_j", "jet velocity", "m/s", "starboard", "v_j", "waterjet_velocity"),
@@ -223,7 +223,7 @@ _TABLE = [
 COMMANDS = tuple(f"{letter}_{k}" for letter in ("command", "alpha", "rpm") for k in _INDEXED)
 """Channels of thrusters: what is ordered or follows an order, never a measurement to be smoothed."""
 
-TWIN_DIFFERENCES: dict[str, str] = {of: f"{of}_difference" for of in ("delta", "n", "v_j", "bucket")}
+TWIN_DIFFERENCES: dict[str, str] = {s: f"{s}_difference" for s in ("delta", "n", "v_j", "bucket")}
 """Channel of the mean of two rudders, screws, nozzles or buckets -> that of their difference, port less starboard."""
 
 REFERENCES = ("psi_ref", "r_ref", "phi_ref", "delta_ref", "alpha_f_ref")

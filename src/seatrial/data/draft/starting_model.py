@@ -251,7 +251,7 @@ def _is_shallow(records: Sequence[Record | None], size: StatedSize) -> bool:
 
 
 def _show_depth(records: Sequence[Record | None]) -> bool:
-    """Whether runs are over depths that differ: one depth does not tell a coefficient from its change with depth."""
+    """Whether runs are over depths that differ: one depth does not part a coefficient from its change with depth."""
     depths = [float(np.median(record["depth"])) for record in records if record is not None and "depth" in record]
     known = [depth for depth in depths if depth > 0.0]
     return bool(known) and (len(known) < len(depths) or max(known) > _OTHER_DEPTH * min(known))

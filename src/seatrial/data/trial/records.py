@@ -281,8 +281,8 @@ def load_records(trial: Trial, load: "RunLoader | None" = None) -> tuple[tuple[T
 def _refuse_aground(model: Model, records: Sequence[Record]) -> None:
     draught = model.parameters.value_of("d", 0.0) if "depth" in model.input_names else 0.0
     for record in records:
-        known = record["depth"][record["depth"] > 0.0] if "depth" in record else np.empty(0)
-        if known.size and (least := float(np.min(known))) <= draught:
+        depths = record["depth"][record["depth"] > 0.0] if "depth" in record else np.empty(0)
+        if depths.size and (least := float(np.min(depths))) <= draught:
             raise InputError(
                 f"record '{record.name}': the water is {least:.3g} m deep where the ship draws {draught:.3g} m; depth "
                 "is from the surface to the bottom: of a sounder in the keel add "

@@ -86,7 +86,10 @@ def _hull(sheet: Sheet, motion: ShipFlow) -> tuple[sp.Symbol, sp.Symbol, sp.Symb
 
 @dataclass(frozen=True)
 class _Masses:
-    """Masses and inertia with added ones, M_c = m x_G; m, m_y' and rho/2 L^2 d."""
+    """Masses and inertia with added ones, M_c = m x_G; m, m_y' and rho/2 L^2 d.
+
+    M_s: sway mass of the surge force v r, deep water's at any depth, as X_vr of the same force is.
+    """
 
     M_u: sp.Symbol
     M_v: sp.Symbol
@@ -95,6 +98,7 @@ class _Masses:
     m: sp.Symbol
     m_y: sp.Symbol
     unit: sp.Symbol
+    M_s: sp.Symbol
 
 
 _EQUATIONS = f"{YASUKAWA}, equations of motion"
@@ -112,7 +116,8 @@ def _masses(sheet: Sheet, motion: ShipFlow) -> _Masses:
     M_v = sheet.bind("M_v", m + motion.water.m_y * m_y * unit, _EQUATIONS, "kg")
     M_c = sheet.bind("M_c", m * x_G, _EQUATIONS, "kg m")
     M_r = sheet.bind("M_r", I_z + M_c * x_G + motion.water.J_z * J_z * unit * motion.L**2, _EQUATIONS, "kg m^2")
-    return _Masses(M_u, M_v, M_c, M_r, m, m_y, unit)
+    M_s = M_v if motion.water is DEEP else sheet.bind("M_s", m + m_y * unit, f"{_EQUATIONS}, deep water", "kg")
+    return _Masses(M_u, M_v, M_c, M_r, m, m_y, unit, M_s)
 
 
 def _with_centripetal(
@@ -120,7 +125,7 @@ def _with_centripetal(
 ) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
     """Return X_m, Y_m, N_m: what a balance feels that holds the ship in steady motion."""
     u_r = sheet.bind("u_r", motion.u * motion.r, _EQUATIONS, "m/s^2")
-    X_m = sheet.bind("X_m", X + masses.M_v * motion.v * motion.r + masses.M_c * motion.r**2, _EQUATIONS, "N")
+    X_m = sheet.bind("X_m", X + masses.M_s * motion.v * motion.r + masses.M_c * motion.r**2, _EQUATIONS, "N")
     Y_m = sheet.bind("Y_m", Y - masses.M_u * u_r, _EQUATIONS, "N")
     return X_m, Y_m, sheet.bind("N_m", N - masses.M_c * u_r, _EQUATIONS, "N m")
 

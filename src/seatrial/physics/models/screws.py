@@ -147,10 +147,10 @@ def propelled_by_two(sheet: Sheet, motion: ShipFlow, n: sp.Symbol) -> tuple[Plan
     )  # fmt: skip
     by, wake = _propeller_coefficients(sheet), _wake(sheet)
     thrusts = tuple(_thrust_of(sheet, motion, by, wake, screw) for screw in sides)
-    sheet.output("thrust", sp.Add(*(one.thrust for one in thrusts)), "both screws", "N")
+    T = sheet.output("thrust", sp.Add(*(thrust.thrust for thrust in thrusts)), "both screws", "N")
     deducted = (1 - by.t_P) * motion.water.t_P
-    X_P = sheet.bind("X_P", deducted * sp.Add(*(one.thrust for one in thrusts)), f"{LEE}, propeller forces", "N")
-    arms = sp.Add(*(screw.y * one.thrust for screw, one in zip(sides, thrusts, strict=True)))
+    X_P = sheet.bind("X_P", deducted * T, f"{LEE}, propeller forces", "N")
+    arms = sp.Add(*(screw.y * thrust.thrust for screw, thrust in zip(sides, thrusts, strict=True)))
     N_P = sheet.bind("N_P", -deducted * arms, f"{LEE}, propeller forces; {RIGID}", "N m")
     return PlanarForce(X_P, sp.Integer(0), N_P), _twin_rudders(sheet, motion, sides, thrusts)
 

@@ -4,8 +4,8 @@
 
 Each has a share of its own: 1 is the change as published, 0 is none. In deep water, and where the depth is not
 recorded, every factor is exactly 1. They are those that Tang et al. 2020 put together: Kijima et al. for hull, wake and
-rudder, Li & Wu for the added masses. Terms of higher order, surge added mass, squat and waves of the ship's own are
-those of deep water, as no source of theirs could be checked.
+rudder, Li & Wu for the added masses. Terms of higher order, the force v r of surge and its added mass among them, squat
+and waves of the ship's own are those of deep water, as no source of their change could be checked.
 """
 
 from collections.abc import Mapping
@@ -69,7 +69,7 @@ def depth_factors(sheet: Sheet, L: sp.Symbol, d: sp.Symbol) -> DepthFactors:
     ratio = sp.Piecewise((sp.Integer(0), depth <= 0), (d / depth, depth > least), (1 / sp.Float(LEAST_RATIO), True))
     d_h = sheet.bind("d_h", ratio, "draught over depth; 0: deep")
     published = {**_hull(sheet, d_h, 2 * d / L, C_b * B / L), **_added_masses(sheet, d_h, B / d)}
-    published["R_0"] = (1 + sp.Float(0.388) * d_h**2, FURUKAWA)
+    published["R_0"] = (1 + sp.Float(0.388) * d_h**2, FURUKAWA)  # Furukawa et al. 2016, resistance
     # 1 - w_P, 1 - t_P and flow straightening over those in deep water
     published["w_P"] = (sp.cos(sp.Float(1.4) * C_b * d_h), KIJIMA)  # Kijima et al. 1990, wake
     published["t_P"] = (1 / (1 - sp.Float(0.2) * d_h + sp.Float(0.7295) * d_h**2), KIJIMA)  # the same, deduction
@@ -98,8 +98,8 @@ def _hull(sheet: Sheet, d_h: sp.Symbol, k: sp.Expr, fullness: sp.Expr) -> dict[s
 
     in_sway, in_drift = aspect(shut**3 / slender), aspect(shut * slender)  # exponents 2.3 and 1.7
     in_turn = sheet.bind("k_r", aspect(slender), f"{KIJIMA}, effective over geometric aspect ratio, yaw rate")
-    lift, drag = sp.pi / 2 * k, sp.Float(1.4) * fullness  # of Y_v
-    damping = sp.Float(0.54)  # of N_r
+    lift, drag = sp.pi / 2 * k, sp.Float(1.4) * fullness  # Kijima et al. 1990, Y_v
+    damping = sp.Float(0.54)  # Kijima et al. 1990, N_r
     return {
         "Y_v": ((lift * in_sway + drag) / (lift + drag), KIJIMA),
         "Y_r": (in_turn, KIJIMA),
