@@ -127,3 +127,24 @@ def test_two_rudders_and_shafts_that_act_apart_are_those_of_a_model_with_both(
     assert 'channels.n = { column = "shaft port [rpm]", twin = "shaft stbd [rpm]"' in text
     assert ("y_P = " in text) == (model == "mmg_twin")
     assert ('"twin_screws"' in text) == (model == "mmg_twin")
+
+
+@pytest.mark.parametrize(
+    ("depths", "model", "is_free"),
+    [((9.0, 80.0), "mmg_shallow", True), ((9.0, 9.1), "mmg_shallow", False), ((60.0, 80.0), "mmg", False)],
+)
+def test_a_depth_that_the_ship_feels_is_an_input_and_two_depths_free_its_shares(
+    tmp_path: Path, depths: tuple[float, float], model: str, is_free: bool
+) -> None:
+    time = np.arange(0.0, 300.0, 1.0)
+    rudder = 10.0 * np.sign(np.sin(0.05 * time))
+    for k, depth in enumerate(depths):
+        columns = {"time": time, "heading [deg]": np.degrees(np.cumsum(np.cumsum(0.0001 * rudder)))}
+        columns |= {"u [m/s]": 6.0 + 0.1 * np.sin(time + k), "v [m/s]": 0.01 * rudder, "rudder [deg]": rudder}
+        columns |= {"shaft [rpm]": 130.0 + np.sin(time), "water depth [m]": depth + 0.1 * np.sin(0.1 * time)}
+        write(tmp_path / f"run_{k}.csv", columns)
+    text = draft_trial(tmp_path / "run_0.csv", tmp_path / "run_1.csv", length=90.0, draught=6.0).text
+    assert f'name = "{model}"' in text
+    assert ("channels.depth" in text) == ("shallow" in model)
+    assert ('"shallow"]' in text) == ("shallow" in model)
+    assert ('"h_N_v"' in text) == is_free
