@@ -118,7 +118,8 @@ def _words(parameter: Parameter) -> str:
 
 
 def _filled(model: Model, priors: Mapping[str, LiteraturePrior]) -> list[FilledValue]:
-    by_formula = [FilledValue(n, prior.source, prior.deviation) for n, prior in priors.items() if n in model.parameters]
+    filled = {n: prior for n, prior in priors.items() if n in model.parameters and n not in _FORM}
+    by_formula = [FilledValue(n, prior.source, prior.deviation) for n, prior in filled.items()]
     stated = {"L", *priors, *model.parameters.missing}
     fixed = [p for p in model.parameters if p.name not in stated]
     return by_formula + [FilledValue(p.name, _stated(p), 0.0) for p in fixed]

@@ -152,7 +152,8 @@ def propelled_by_two(sheet: Sheet, motion: ShipFlow, n: sp.Symbol) -> tuple[Plan
     X_P = sheet.bind("X_P", deducted * T, f"{LEE}, propeller forces", "N")
     arms = sp.Add(*(screw.y * thrust.thrust for screw, thrust in zip(sides, thrusts, strict=True)))
     N_P = sheet.bind("N_P", -deducted * arms, f"{LEE}, propeller forces; {RIGID}", "N m")
-    return PlanarForce(X_P, sp.Integer(0), N_P), _twin_rudders(sheet, motion, sides, thrusts)
+    Y_P = sheet.bind("Y_P", sp.Integer(0), f"{LEE}, none of two screws that turn opposite ways", "N")
+    return PlanarForce(X_P, Y_P, N_P), _twin_rudders(sheet, motion, sides, thrusts)
 
 
 _THRUST = f"{YASUKAWA}, thrust, T = rho n^2 D_P^4 K_T; astern {KITAGAWA}"

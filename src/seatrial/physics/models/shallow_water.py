@@ -23,6 +23,7 @@ LEAST_RATIO = 1.1
 """Depth over draught down to which the factors change; in less water they stay what they are there; chosen."""
 
 _ONE = sp.S.One
+_Factor = sp.Expr | float
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,10 @@ def depth_factors(sheet: Sheet, L: sp.Symbol, d: sp.Symbol) -> DepthFactors:
     least = sp.Float(LEAST_RATIO) * d
     ratio = sp.Piecewise((sp.Integer(0), depth <= 0), (d / depth, depth > least), (1 / sp.Float(LEAST_RATIO), True))
     d_h = sheet.bind("d_h", ratio, "draught over depth; 0: deep")
-    published = {**_hull(sheet, d_h, 2 * d / L, C_b * B / L), **_added_masses(sheet, d_h, B / d)}
+    published: dict[str, tuple[_Factor, str]] = {
+        **_hull(sheet, d_h, 2 * d / L, C_b * B / L),
+        **_added_masses(sheet, d_h, B / d),
+    }
     published["R_0"] = (1 + sp.Float(0.388) * d_h**2, FURUKAWA)  # Furukawa et al. 2016, resistance
     # 1 - w_P, 1 - t_P and flow straightening over those in deep water
     published["w_P"] = (sp.cos(sp.Float(1.4) * C_b * d_h), KIJIMA)  # Kijima et al. 1990, wake
@@ -78,7 +82,7 @@ def depth_factors(sheet: Sheet, L: sp.Symbol, d: sp.Symbol) -> DepthFactors:
     return DepthFactors(**{name: _shared(sheet, name, *factor) for name, factor in published.items()})
 
 
-def _shared(sheet: Sheet, name: str, factor: sp.Expr, source: str) -> sp.Symbol:
+def _shared(sheet: Sheet, name: str, factor: _Factor, source: str) -> sp.Symbol:
     share = sheet.parameter(
         share_name(name), 1.0, meaning=f"share of the published change of {name} with depth", source=source,
         scale=SHARE_SPREAD[name], latex=rf"h_{{{name.replace('_', ' ')}}}",
@@ -86,7 +90,7 @@ def _shared(sheet: Sheet, name: str, factor: sp.Expr, source: str) -> sp.Symbol:
     return sheet.bind(f"f_{name}", 1 + share * (factor - 1), source)
 
 
-def _hull(sheet: Sheet, d_h: sp.Symbol, k: sp.Expr, fullness: sp.Expr) -> dict[str, tuple[sp.Expr, str]]:
+def _hull(sheet: Sheet, d_h: sp.Symbol, k: sp.Expr, fullness: sp.Expr) -> dict[str, tuple[_Factor, str]]:
     """Factors of the linear derivatives: the aspect ratio k becomes k / (d/2h + (x cot x)^q), x = pi d / 2h."""
     x = sp.pi * d_h / 2
     shut = sheet.bind("x_cot_x", sp.Piecewise((_ONE, d_h <= 0), (x / sp.tan(x), True)), f"{KIJIMA}, x cot x")
@@ -108,7 +112,7 @@ def _hull(sheet: Sheet, d_h: sp.Symbol, k: sp.Expr, fullness: sp.Expr) -> dict[s
     }
 
 
-def _added_masses(sheet: Sheet, d_h: sp.Symbol, B_d: sp.Expr) -> dict[str, tuple[sp.Expr, str]]:
+def _added_masses(sheet: Sheet, d_h: sp.Symbol, B_d: sp.Expr) -> dict[str, tuple[_Factor, str]]:
     clearance = sp.Piecewise((sp.Integer(0), d_h <= 0), ((d_h / (1 - d_h)) ** sp.Float(0.82), True))
     near = sheet.bind("c_h", clearance, f"{LI_WU}, (h/d - 1)^-0.82")
     sway = sp.Float(0.413) + sp.Float(0.0320) * B_d + sp.Float(0.129) * B_d**2  # Li & Wu 1990
