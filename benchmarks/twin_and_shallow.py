@@ -62,8 +62,8 @@ def speed_lines() -> list[Line]:
 
 
 def run() -> list[Line]:
-    """A sample of the draws of two screws."""
-    return lines(estimated(twin_screw_trials(), SAMPLE))
+    """A sample of the draws of two screws, and the speed of simulation."""
+    return [*lines(estimated(twin_screw_trials(), SAMPLE)), *speed_lines()]
 
 
 def main() -> None:
