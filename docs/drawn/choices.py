@@ -17,7 +17,11 @@ from seatrial.core.figures.run import hull_outline
 from seatrial.core.results import Fit
 from seatrial.core.results.online import Snapshot
 from seatrial.core.values import Array
+from seatrial.physics.manoeuvres.programme import programme
+from seatrial.physics.models.shallow_water import SHARE_SPREAD, share_name
 from seatrial.physics.simulate import replay
+from seatrial.physics.simulate.steer import manoeuvre
+from seatrial.problems.twin_ships import shallow_water_ship, twin_screw_ship
 
 NOMOTO = {"K": 0.15, "T": 8.0, "U": 2.0}  # 1/s, s, m/s: a craft of some 8 m; chosen
 TRUE_DIAMETER = 3.0 * 320.0  # m, tactical, of the ship of the tutorial, as the page has it
@@ -51,6 +55,36 @@ def manoeuvres() -> Figure:
         widths[legend] = np.array([half_width(fit, name) / abs(trial.truth[name]) for name in names])
     label = "half width of the 95 % interval, % of the true value, 1000 at most"
     return dots(names, {legend: np.minimum(100.0 * shares, 1000.0) for legend, shares in widths.items()}, label)
+
+
+def sides_and_depth() -> Figure:
+    """Track of a ferry with shafts against each other, and turning circles of KVLCC2 over less and less water."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(7.2, 3.6))
+    ferry = twin_screw_ship()
+    time = np.arange(0.0, 90.0, 0.2)
+    # rps: astern faster than ahead, so that the ship stays where it is; chosen
+    shafts = {"n": -1.2 + 0.0 * time, "delta": 0.0 * time, "n_difference": 14.0 + 0.0 * time}
+    start = dict.fromkeys(ferry.states, 0.0)
+    length = ferry.parameters["L"].value
+    spin = replay(ferry, st.Record.from_arrays("spin", time, shafts), start)
+    for k in range(0, len(time), 75):
+        north, east = hull_outline(spin["x0"][k], spin["y0"][k], spin["psi"][k], length).T / length
+        left.plot(east, north, color=GREY, linewidth=0.8)
+    left.plot(spin["y0"] / length, spin["x0"] / length, color=BLUE)
+    left.set_title("port shaft ahead, starboard astern")
+    tanker = shallow_water_ship().with_values(dict.fromkeys(map(share_name, SHARE_SPREAD), 1.0))
+    draught, length = tanker.parameters["d"].value, tanker.parameters["L"].value
+    for ratio, colour in ((0.0, BLUE), (3.0, GREEN), (1.5, ORANGE), (1.2, GREY)):
+        held = {"n": 10.4, "depth": ratio * draught}
+        turn = manoeuvre(tanker, programme("turning-circle:35"), duration=140.0, inputs=held, speed=1.18)
+        label = f"depth {ratio:g} draughts" if ratio else "deep"
+        right.plot(turn["y0"] / length, turn["x0"] / length, color=colour, label=label)
+    right.legend(loc="lower right", fontsize=8)
+    right.set_title("rudder 35°, KVLCC2")
+    for axes in (left, right):
+        axes.set_aspect("equal")
+        axes.set(xlabel="east, lengths", ylabel="north, lengths")
+    return figure
 
 
 def half_width(fit: Fit, name: str) -> float:

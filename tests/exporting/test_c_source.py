@@ -28,7 +28,7 @@ from seatrial.physics.models.published import kvlcc2
 TOLERANCE = 1e-12  # of a step, relative: rounding, a thousand times over
 
 
-@pytest.mark.parametrize("name", ["waterjet", "thrusters", "heave_pitch", "roll"])
+@pytest.mark.parametrize("name", ["waterjet", "thrusters", "heave_pitch", "roll", "mmg_twin", "mmg_shallow"])
 def test_a_step_is_that_of_the_simulation(name: str, compiler: str, tmp_path: Path, rng: np.random.Generator) -> None:
     assert compiler
     model = complete_model(name, rng)

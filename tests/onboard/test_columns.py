@@ -100,6 +100,14 @@ def test_units_names_and_quotes() -> None:
     np.testing.assert_allclose(table(found), [[0.5, 10 * 1852 / 3600, np.pi / 2]], rtol=1e-15)
 
 
+def test_twins_are_their_mean_and_their_difference() -> None:
+    """As a file with these columns is read: the other side counts for both where one is empty."""
+    rudder = ColumnSpec("delta", "port", "deg", twin="starboard", positive="port")
+    layout = Layout("text", ColumnSpec("time", "t", "s"), (rudder, rudder.difference), header_lines=1)
+    found, _ = samples("t,port,starboard\n0,10,4\n1,,4\n2,,\n", layout)
+    np.testing.assert_allclose(np.degrees(table(found)[:, 1:]), [[7.0, -6.0], [4.0, 0.0], [np.nan, np.nan]])
+
+
 @pytest.mark.parametrize(
     ("line", "cells"),
     [

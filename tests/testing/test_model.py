@@ -8,6 +8,7 @@ import pytest
 from seatrial.core.equations import Model, Sheet
 from seatrial.physics.models import MODELS, model_named
 from seatrial.physics.models.published import parameter_set, theoretical_coefficients
+from seatrial.problems.twin_ships import twin_screw_ship
 from seatrial.testing import ConformanceError, MirrorLaw, check_model
 
 # parameters of the built-in models that change sign in the mirror (asymmetry, zeros, current), and those split by side
@@ -16,11 +17,14 @@ SPLIT = {"C_2_plus": "C_2_minus", "gamma_R_plus": "gamma_R_minus", "command_1": 
 SPLIT |= {f"{n}_port": f"{n}_starboard" for n in ("c", "T", "zero", "span", "angle", "x", "y")}
 ODD |= {"r_rest", "y_port", "y_starboard", "angle_port", "angle_starboard"}
 LAW = MirrorLaw(frozenset(ODD), SPLIT)
+TWINS = MirrorLaw(frozenset(ODD))  # the port side has the coefficients of the other side's flow
 
 
 def complete(name: str) -> Model:
     """A built-in model with a value for every parameter."""
-    if name in ("mmg", "mmg_roll"):
+    if name == "mmg_twin":
+        return twin_screw_ship()
+    if name in ("mmg", "mmg_roll", "mmg_shallow"):
         rolling = {"GM": 0.1, "I_x": 600.0} if name == "mmg_roll" else {}
         return parameter_set("kvlcc2").applied_to(model_named(name).with_values(rolling))
     if name == "son_nomoto":
@@ -33,7 +37,8 @@ def complete(name: str) -> Model:
 
 @pytest.mark.parametrize("name", sorted(MODELS))
 def test_built_in_models_conform(name: str) -> None:
-    check_model(complete(name), None if name.startswith("heave_pitch") else LAW, points=5)
+    law = TWINS if name == "mmg_twin" else LAW
+    check_model(complete(name), None if name.startswith("heave_pitch") else law, points=5)
 
 
 def steering(damping: float = 0.1, unit: str = "1/s", source: str = "Nomoto et al. 1957", cause: str = "") -> Model:

@@ -1,7 +1,8 @@
 """Lines of columns as samples, by the layout that reads the same file once it is complete."""
 
 import codecs
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from operator import itemgetter
 
 import numpy as np
@@ -41,7 +42,8 @@ class ColumnReader:
             raise InputError(f"a stream cannot be Froude-scaled by {layout.scale:g}; follow it at its own scale")
         _refuse_encoding(layout.encoding)
         self._layout = layout
-        self._columns = (layout.time, *layout.columns)
+        twins = (replace(column, source=column.twin) for column in layout.columns if column.twin)
+        self._columns = (layout.time, *layout.columns, *twins)
         self._time_factor = layout.time.si_factor("s")
         for column in layout.columns:
             column.in_si(np.zeros(1))
@@ -95,7 +97,9 @@ class ColumnReader:
             return []
         with np.errstate(over="ignore"):
             cells = np.array(rows)
-            values = [one.in_si(cells[:, k]) for k, one in enumerate(self._layout.columns, start=1)]
+            values = [
+                one.in_si(numbers) for one, numbers in zip(self._layout.columns, self._numbers(cells), strict=True)
+            ]
             block = np.column_stack([self._time_factor * cells[:, 0], *values])
         block[~np.isfinite(block)] = np.nan
         readable = np.isfinite(block[:, 0])
@@ -106,6 +110,17 @@ class ColumnReader:
         block.setflags(write=False)
         channels: Array = block[:, 1:]
         return [Sample(time, row) for time, row in zip(block[:, 0].tolist(), channels, strict=True)]
+
+    def _numbers(self, cells: Array) -> Iterator[Array]:
+        """What the columns of the layout hold, (n,) each; twins stand behind all others, in their order."""
+        columns = self._layout.columns
+        place = 1 + len(columns)
+        for k, column in enumerate(columns, start=1):
+            if column.twin:
+                yield column.of_twins(cells[:, k], cells[:, place])
+                place += 1
+            else:
+                yield cells[:, k]
 
     def _start_file(self) -> None:
         """Skip the header of a file that begins: its lines the first time, later only lines that are no numbers."""

@@ -87,4 +87,4 @@ def random_points(model: Model, generator: np.random.Generator, count: int) -> I
 
 
 def _is_lateral(symbol: str) -> bool:
-    return symbol in NOTATION and NOTATION[symbol].positive in ("starboard", "east")
+    return symbol in NOTATION and NOTATION[symbol].positive in ("starboard", "port", "east")

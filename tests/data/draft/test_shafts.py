@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 from tests.data.draft.test_draft import write
 from tests.onboard.sentences import sentence
 
@@ -120,3 +121,46 @@ def test_the_engine_of_an_outboard_drives_the_thruster_that_turns() -> None:
     assert with_turned_thruster([(steering, engine)], is_rate_steady=False) == ((steering, engine),)
     lines = thruster_tables([turned, drive], StatedSize(5.6), {"rpm_1": 2880.0})
     assert any(line.startswith('command = { channel = "rpm_1", unit = "rpm", span = 2880 }') for line in lines)
+
+
+@pytest.mark.parametrize(("apart", "model"), [(0.0, "mmg"), (40.0, "mmg_twin")])
+def test_two_rudders_and_shafts_that_act_apart_are_those_of_a_model_with_both(
+    tmp_path: Path, apart: float, model: str
+) -> None:
+    time = np.arange(0.0, 300.0, 1.0)
+    rudder = 10.0 * np.sign(np.sin(0.05 * time))
+    columns = {
+        "time": time,
+        "heading [deg]": np.degrees(np.cumsum(np.cumsum(0.0001 * rudder))),
+        "u [m/s]": 7.0 + 0 * time,
+    }
+    columns |= {"v [m/s]": 0.01 * rudder, "rudder port [deg]": rudder, "rudder stbd [deg]": rudder}
+    steady, shaft = 130.0 + np.sin(time), apart * np.sign(np.sin(0.03 * time))
+    columns |= {"shaft stbd [rpm]": steady - shaft, "shaft port [rpm]": steady + shaft}
+    write(tmp_path / "ferry.csv", columns)
+    text = draft_trial(tmp_path / "ferry.csv", length=140.0).text
+    assert f'name = "{model}"' in text
+    assert 'channels.n = { column = "shaft port [rpm]", twin = "shaft stbd [rpm]"' in text
+    assert ("y_P = " in text) == (model == "mmg_twin")
+    assert ('"twin_screws"' in text) == (model == "mmg_twin")
+
+
+@pytest.mark.parametrize(
+    ("depths", "model", "is_free"),
+    [((9.0, 80.0), "mmg_shallow", True), ((9.0, 9.1), "mmg_shallow", False), ((60.0, 80.0), "mmg", False)],
+)
+def test_a_depth_that_the_ship_feels_is_an_input_and_two_depths_free_its_shares(
+    tmp_path: Path, depths: tuple[float, float], model: str, is_free: bool
+) -> None:
+    time = np.arange(0.0, 300.0, 1.0)
+    rudder = 10.0 * np.sign(np.sin(0.05 * time))
+    for k, depth in enumerate(depths):
+        columns = {"time": time, "heading [deg]": np.degrees(np.cumsum(np.cumsum(0.0001 * rudder)))}
+        columns |= {"u [m/s]": 6.0 + 0.1 * np.sin(time + k), "v [m/s]": 0.01 * rudder, "rudder [deg]": rudder}
+        columns |= {"shaft [rpm]": 130.0 + np.sin(time), "water depth [m]": depth + 0.1 * np.sin(0.1 * time)}
+        write(tmp_path / f"run_{k}.csv", columns)
+    text = draft_trial(tmp_path / "run_0.csv", tmp_path / "run_1.csv", length=90.0, draught=6.0).text
+    assert f'name = "{model}"' in text
+    assert ("channels.depth" in text) == ("shallow" in model)
+    assert ('"shallow"]' in text) == ("shallow" in model)
+    assert ('"h_N_v"' in text) == is_free

@@ -14,7 +14,7 @@ from seatrial.core.values import Array
 from seatrial.physics.models import MODELS, model_named
 from seatrial.physics.models.abkowitz import ROLLING_TERMS
 from seatrial.physics.models.forces import variables_of
-from seatrial.physics.models.mmg import mmg_roll
+from seatrial.physics.models.mmg import mmg_roll, mmg_shallow
 from seatrial.physics.models.published import (
     QI2025_SHIP,
     container_ship,
@@ -23,10 +23,11 @@ from seatrial.physics.models.published import (
     kvlcc2_l7,
     theoretical_coefficients,
 )
+from seatrial.problems.twin_ships import twin_screw_ship
 
 MIRRORED = {"v", "r", "r_rest", "psi", "y0", "phi", "p", "delta", "alpha_w", "alpha_f", "F2", "M4",
-            "wind_direction"}  # fmt: skip
-# parameters that change sign in the mirror; those split by side change places
+            "wind_direction", "n_difference", "v_j_difference", "bucket_difference"}  # fmt: skip
+# parameters that change sign in the mirror; those split by side change places, unless each side has its own
 ODD = {"Y_0", "N_0", "Y_T", "N_T", "Y_dd", "N_dd", "Y_nn", "Y_nu", "N_nn", "N_nu", "delta_0", "current_east",
        "phi_0"}  # fmt: skip
 SIDES = {"C_2_plus": "C_2_minus", "gamma_R_plus": "gamma_R_minus"}
@@ -37,7 +38,8 @@ INERTIA = {"X_udot": -0.001, "Y_vdot": -0.015, "Y_rdot": -0.001, "N_vdot": -0.00
 
 def filled(name: str, rng: np.random.Generator) -> Model:
     """The model with a value other than zero for every parameter."""
-    known = {"mmg": kvlcc2, "mmg_roll": rolling_kvlcc2, "son_nomoto": container_ship}
+    known = {"mmg": kvlcc2, "mmg_roll": rolling_kvlcc2, "son_nomoto": container_ship, "mmg_twin": twin_screw_ship,
+             "mmg_shallow": shallow_kvlcc2}  # fmt: skip
     model = known.get(name, MODELS[name])()
     if name.startswith("abkowitz"):
         rolling = {"GM": 0.2, "I_x": 600.0, "K_pdot": -1e-5} if name == "abkowitz_roll" else {}
@@ -62,6 +64,11 @@ def rolling_kvlcc2() -> Model:
     """The 7 m tanker with levers, GM and roll inertia of a rolling ship; chosen."""
     ship = mmg_roll().with_values({"GM": 0.1, "I_x": 600.0, "J_x_prime": 1e-5})
     return kvlcc2_l7().applied_to(ship)
+
+
+def shallow_kvlcc2() -> Model:
+    """The 7 m tanker in water of a recorded depth."""
+    return kvlcc2_l7().applied_to(mmg_shallow())
 
 
 def call(model: Model, x: Array, u: Array, p: Array) -> Array:
@@ -117,7 +124,7 @@ def test_the_mirrored_ship_makes_the_mirrored_motion(name: str, rng: np.random.G
     if model.name.startswith("abkowitz"):
         mirrored_values |= {t: v * _parity(t) for t, v in values.items() if t in ROLLING_TERMS}
     for plus, minus in SIDES.items():
-        if plus in values:
+        if plus in values and model.name != "mmg_twin":
             mirrored_values |= {plus: values[minus], minus: values[plus]}
     sign_x = np.array([-1.0 if s in MIRRORED else 1.0 for s in model.states])
     sign_u = np.array([-1.0 if i in MIRRORED else 1.0 for i in model.input_names])

@@ -180,6 +180,19 @@ _TABLE = [
     Quantity("delta", "rudder or nozzle angle", "rad", "body", "starboard", r"\delta", "rudder_angle"),
     Quantity("n", "propeller rate", "rps", "none", "ahead", "n", "propeller_rate"),
     Quantity("v_j", "jet velocity", "m/s", "body", "aft", "v_j", "waterjet_velocity"),
+    Quantity("bucket", "share of the jet that the reversing bucket sends forward", "1", "none", "astern", "b",
+             "bucket_share"),
+    *(
+        Quantity(f"{symbol}_difference", f"{meaning}, port less starboard", unit, "body", positive, rf"\Delta {latex}",
+                 f"{name}_difference")
+        for symbol, meaning, unit, positive, latex, name in (
+            ("delta", "rudder or nozzle angle", "rad", "none", r"\delta", "rudder_angle"),
+            ("n", "propeller rate", "rps", "starboard", "n", "propeller_rate"),
+            ("v_j", "jet velocity", "m/s", "starboard", "v_j", "waterjet_velocity"),
+            ("bucket", "share of the jet sent forward", "1", "port", "b", "bucket_share"),
+        )
+    ),
+    Quantity("depth", "depth of the water at rest", "m", "none", "down", "h", "sea_floor_depth_below_sea_surface"),
     Quantity("thrust", "propeller thrust", "N", "body", "forward", "T_P", "propeller_thrust"),
     Quantity("torque", "propeller torque", "N m", "none", "ahead", "Q_P", "propeller_torque"),
     Quantity("u_dot", "surge acceleration", "m/s^2", "body", "forward", r"\dot u", "platform_surge_acceleration"),
@@ -211,6 +224,9 @@ _TABLE = [
 
 COMMANDS = tuple(f"{letter}_{k}" for letter in ("command", "alpha", "rpm") for k in _INDEXED)
 """Channels of thrusters: what is ordered or follows an order, never a measurement to be smoothed."""
+
+TWIN_DIFFERENCES: dict[str, str] = {s: f"{s}_difference" for s in ("delta", "n", "v_j", "bucket")}
+"""Channel of the mean of two rudders, screws, nozzles or buckets -> that of their difference, port less starboard."""
 
 REFERENCES = ("psi_ref", "r_ref", "phi_ref", "delta_ref", "alpha_f_ref")
 """Channels of what a controller, a steering gear or fins are ordered to hold."""

@@ -11,6 +11,7 @@ import numpy as np
 from seatrial.core.text.numbers import significant
 from seatrial.core.values import Array, Finding, Record, Severity
 from seatrial.core.values.arrays import unwrapped
+from seatrial.core.values.notation import TWIN_DIFFERENCES
 from seatrial.data.check.consequences import moment
 from seatrial.data.check.motion import MIN_SAMPLES, sample_noise, smoothed, window_length
 from seatrial.physics.manoeuvres import steered_orders
@@ -430,6 +431,8 @@ def _propeller_findings(record: Record) -> list[Finding]:
     if "n" not in record:
         return []
     n = np.abs(record["n"])
+    if (apart := TWIN_DIFFERENCES["n"]) in record:
+        n += np.abs(record[apart]) / 2  # of the faster of two shafts
     turning = np.flatnonzero(n > STOPPED_FRACTION * n.max())
     if n.max() == 0 or turning.size == 0:
         return []

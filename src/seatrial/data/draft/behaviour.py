@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from seatrial.core.values import Array, InputError, Record
+from seatrial.core.values.notation import TWIN_DIFFERENCES
 from seatrial.data.check.conventions import with_standard_signs
 from seatrial.data.check.motion import recorded_motion
 from seatrial.data.check.repair import repaired_whole, without_sentinels
@@ -221,7 +222,8 @@ def run_record(
         if columns:
             time = next(topic.time for topic in survey.topics if topic.time is not None)
             geometry = replace(survey.layout.geometry, variation=0.0)
-            sources.append(LogSource(survey.log, replace(survey.layout, time=time, columns=columns, geometry=geometry)))
+            layout = replace(survey.layout, time=time, columns=columns, geometry=geometry)
+            sources.append(LogSource(survey.log, layout.with_differences(TWIN_DIFFERENCES.values())))
     try:
         if len(sources) == 1:
             record = assemble_record(sources[0].log, sources[0].layout, "")

@@ -24,6 +24,7 @@ from seatrial.data.draft.guess import (
     with_columns_of_turning,
     with_turned_thruster,
     without_conflicts,
+    without_depth,
 )
 from seatrial.data.draft.held_out import (
     NOTHING_HELD_OUT,
@@ -238,6 +239,7 @@ def draft_trial(
     has_wind = model.has_propeller and tells_wind(guesses[longest[0]])
     model = with_wind(model, size) if has_wind else model
     guesses = [with_wind_role(parts, is_taken=has_wind) for parts in guesses]
+    guesses = guesses if model.is_in_shallow_water else [without_depth(parts) for parts in guesses]
     held_out = held_out_runs(model, pieces, _kinds(runs, stretches, parts))
     is_model_test = model.has_forces_of_a_ship and is_in_basin((g for one in guesses[longest[0]] for g in one), size)
     if not is_model_test:

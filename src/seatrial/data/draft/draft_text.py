@@ -159,7 +159,15 @@ def _heel_lines(least: float, largest: float) -> list[str]:
 
 
 def _prior_lines(model: StartingModel) -> list[str]:
-    sources = ", ".join(f'"{formula}"' for formula in (*_FORMULAS, *(["wind"] if model.has_wind else [])))
+    sources = ", ".join(
+        f'"{formula}"'
+        for formula in (
+            *_FORMULAS,
+            *(["twin_screws"] if model.has_two_screws else []),
+            *(["shallow"] if model.is_in_shallow_water else []),
+            *(["wind"] if model.has_wind else []),
+        )
+    )
     return [f"priors_from = [{sources}]", "prior_sd_percent = 50    # of coefficients whose scatter is not known"]
 
 

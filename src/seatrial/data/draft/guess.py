@@ -300,7 +300,10 @@ NOZZLE = re.compile("nozzle|jet|bucket", re.IGNORECASE)
 _SHAFT = re.compile("prop|shaft|welle|aksel|arbre|helice|hélice|elica", re.IGNORECASE)
 _TWINS = 2  # rudders, nozzles or shafts of which half the sum is one input
 # what such an input means for a model; thrust goes with D^4 at one rate and advance
-_OF_TWINS = {"delta": "in mmg A_R is the area of both", "n": "a propeller of 1.19 times D_P stands for two"}
+_OF_TWINS = {
+    "delta": "in mmg A_R is the area of both, in mmg_twin that of one",
+    "n": "in mmg a propeller of 1.19 times D_P stands for two, mmg_twin has both",
+}
 _PLACE_OR_SPEED = frozenset({"lat", "x0", "u", "v", "sog", "stw"})
 _STEERS = ("delta", "command_", "alpha_", "n_")  # beginnings of the channels of what steers a craft
 _WAVES = frozenset({"zeta", "F3", "alpha_w"})  # channels of craft that waves move
@@ -538,9 +541,11 @@ def _with_twins(parts: Sequence[list[ColumnGuess]]) -> Sequence[list[ColumnGuess
         for k, guess in enumerate(part):
             twins = [place for place, other in enumerate(part) if _are_twins(guess, other)]
             if len(twins) == 1:
-                other, why = part[twins[0]], f"half the sum with '{guess.source}' is taken"
-                part[k] = replace(guess, twin=other.source).with_evidence(_OF_TWINS[guess.symbol])
-                part[twins[0]] = replace(other, unused_because=why)
+                port, starboard = (k, twins[0]) if guess.side == "port" else (twins[0], k)
+                other, why = part[starboard], f"half the sum with '{part[port].source}' is taken"
+                used = replace(part[port], is_used=True, unused_because="", twin=other.source)
+                part[port] = used.with_evidence(_OF_TWINS[guess.symbol])
+                part[starboard] = replace(other, is_used=False, unused_because=why)
     return parts
 
 
@@ -585,6 +590,12 @@ def with_turned_thruster(
     ).with_evidence("turns the only thruster; that of a rudder behind a fixed one is channels.delta, its sign reversed")
     of = {id(steers): turned, id(drives[0]): drive}
     return tuple(tuple(of.get(id(one), one) for one in part) for part in parts)
+
+
+def without_depth(parts: Sequence[Sequence[ColumnGuess]]) -> tuple[tuple[ColumnGuess, ...], ...]:
+    """Return the guesses without the depth of water so deep that no model needs it."""
+    why = "the water is deep, or the model has no depth"
+    return tuple(tuple(_unused(g, why) if g.symbol == "depth" else g for g in part) for part in parts)
 
 
 def _unused(guess: ColumnGuess, reason: str) -> ColumnGuess:

@@ -26,6 +26,7 @@ from seatrial.physics.hydro.empirical import (
     thrust_coefficient,
 )
 from seatrial.physics.hydro.excitation import SEA_WATER, G
+from seatrial.physics.models.screws import twin_screw_formulas
 
 # What a ship's stated size says of its mass, rudder and propeller: values for a draft, until better ones are known.
 
@@ -34,6 +35,7 @@ _LENGTH_TO_BREADTH, _BREADTH_TO_DRAUGHT, _BLOCK = 6.0, 3.0, 0.65
 _BLOCKS = (0.2, 1.0)  # of anything that floats: a slender catamaran's hulls within L, B and d, a box
 _SPAN = 0.75  # height of a rudder over the draught; chosen: between full ships' 0.7 and fine ships' 0.8
 _DIAMETERS = (0.35, 0.75)  # range of a propeller's diameter over the draught; chosen: small models, ferries
+_OFF_CENTRE = 0.22  # place of two screws off the centre line over the breadth; chosen: ferries
 _THRUST = 0.18  # thrust coefficient of a ship's propeller under way; chosen: KVLCC2's is 0.20, of faster ships less
 _PITCH_RATIOS = np.linspace(0.5, 1.4, 91)  # P/D of the B series (Oosterveld & van Oossanen 1975)
 _ADVANCES = (0.25, 1.2)  # range of advance ratios beyond which nothing drives a ship; chosen
@@ -211,8 +213,12 @@ def added_masses(size: StatedSize) -> tuple[EstimatedValue, ...]:
 _DRIVING = "diameter of the propeller that drives such a hull at its rate: R_0 and t_P go with it"
 
 
-def hull_rudder_propeller(size: StatedSize, speed: float, advance: float) -> tuple[EstimatedValue, ...]:
+def hull_rudder_propeller(
+    size: StatedSize, speed: float, advance: float, screws: int = 1
+) -> tuple[EstimatedValue, ...]:
     """Return what the MMG model needs besides the length, of a ship of `speed` [m/s] that makes `advance` [m] a turn.
+
+    screws: one, or two with a rudder behind each; particulars are then those of one of them.
 
     Empty where no propeller under a hull of this draught makes so much or so little way in a turn, as where an engine
     is recorded and not its shaft, and where the hull is too fast for the formulas.
@@ -220,16 +226,18 @@ def hull_rudder_propeller(size: StatedSize, speed: float, advance: float) -> tup
     form = size.form
     if not (advance > 0.0 and 0.0 < speed < _FASTEST * math.sqrt(G * form.L)):
         return ()
-    flow = advance * (1.0 - interaction_wake(form))  # m in a turn: J = u (1 - w) / (n D)
+    wake = interaction_wake(form) if screws == 1 else twin_screw_formulas(form.C_b, form.B, form.d, 0.0)["w_P0"]
+    flow = advance * (1.0 - wake)  # m in a turn: J = u (1 - w) / (n D)
     smallest, largest = (share * form.d for share in _DIAMETERS)
     # thrust over rho n^2: (1 - t_P) rho n^2 D^4 K_T = rho/2 L d U^2 R_0, n = U / advance
-    thrust = 0.5 * form.L * form.d * advance**2 * RESISTANCE / (1.0 - _thrust_deduction(form))
+    thrust = 0.5 * form.L * form.d * advance**2 * RESISTANCE / (1.0 - _thrust_deduction(form)) / screws
     diameter = size.propeller or min(max((thrust / _THRUST) ** 0.25, smallest), largest)
     if not _ADVANCES[0] <= flow / diameter <= _ADVANCES[1]:
         return ()
     pitch_ratio = _pitch_ratio(flow / diameter, thrust / diameter**4)
     # DNV rules for ships, part 3 chapter 14: least area of a rudder in the propeller's slipstream
-    area = form.L * form.d / 100.0 * (1.0 + 50.0 * form.C_b**2 * (form.B / form.L) ** 2)
+    area = form.L * form.d / 100.0 * (1.0 + 50.0 * form.C_b**2 * (form.B / form.L) ** 2) / screws
+    apart = EstimatedValue("y_P", _OFF_CENTRE * form.B, f"m, screws and rudders off the centre line: {_OFF_CENTRE:g} B")
     return (
         *main_dimensions(size),
         fullness(size),
@@ -244,6 +252,7 @@ def hull_rudder_propeller(size: StatedSize, speed: float, advance: float) -> tup
         if size.propeller
         else EstimatedValue("D_P", diameter, f"m, {_DRIVING} (init --propeller)"),
         EstimatedValue("pitch_ratio", pitch_ratio, "P/D with which it drives such a hull at its rate"),
+        *([apart] if screws > 1 else []),
     )
 
 

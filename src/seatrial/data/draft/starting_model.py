@@ -7,15 +7,19 @@ from itertools import combinations
 import numpy as np
 
 from seatrial.core.values import Record
+from seatrial.core.values.notation import TWIN_DIFFERENCES
 from seatrial.data.check.phases import is_free_decay
 from seatrial.data.check.water_speed import SpeedAndCurrent, speed_through_water
 from seatrial.data.draft.ship_estimates import UNSTATED, EstimatedValue, StatedSize, hull_rudder_propeller, wind_areas
 from seatrial.physics.manoeuvres.track import speed
 from seatrial.physics.models.published import SYMMETRIC
+from seatrial.physics.models.registry import family_of
+from seatrial.physics.models.shallow_water import SHARE_SPREAD, share_name
 
 # The model with which a drafted trial begins, by what the logs hold and what is stated of the craft.
 
-_THRUSTERS, _ROLL, _SHIP, _MMG, _WAVES = "thrusters", "roll", "abkowitz", "mmg", "heave_pitch"
+_THRUSTERS, _ROLL, _SHIP, _WAVES = "thrusters", "roll", "abkowitz", "heave_pitch"
+_MMG, _TWIN, _SHALLOW = "mmg", "mmg_twin", "mmg_shallow"
 _FINS = "alpha_f"
 _WAVE, _MOTION_IN_WAVES = "zeta", frozenset({"z", "theta"})
 _ROLL_MOTION = frozenset({"phi", "p"})
@@ -31,8 +35,12 @@ _MMG_TERMS = (
 )  # fmt: skip
 # each of them shows how a ship drifts
 _DRIFT = tuple(map(frozenset, (("u", "v"), ("sog", "cog", "psi"), ("x0", "y0", "psi"), ("lat", "lon", "psi"))))
+_SHARES = tuple(share_name(name) for name in SHARE_SPREAD)
 _APPROACH_S = 5.0  # s from the start of a run whose mean speed is that of the approach; chosen
 _SLOW_START = 0.7  # of the speed that a run reaches, below which its start is no approach; chosen
+_OTHER_DEPTH = 1.2  # of one depth over another, from which on runs show what changes with it; chosen
+_FELT = 3.0  # depth over draught from which on water is deep (PIANC 1992, classes of depth)
+_APART = 0.1  # of the largest mean of two rudders or shafts, from which on their difference steers; chosen
 _STEADY_RATE = 0.1  # of its median, by which the rate of a propeller may vary that is steady; chosen
 
 
@@ -81,7 +89,17 @@ class StartingModel:
     @property
     def has_propeller(self) -> bool:
         """Whether it has forces of hull, propeller and rudder, each its own."""
-        return self.name == _MMG
+        return family_of(self.name) == _MMG
+
+    @property
+    def is_in_shallow_water(self) -> bool:
+        """Whether the depth of the water is an input."""
+        return self.name == _SHALLOW
+
+    @property
+    def has_two_screws(self) -> bool:
+        """Whether it has two screws, each with a rudder behind it."""
+        return self.name == _TWIN
 
     @property
     def has_forces_of_a_ship(self) -> bool:
@@ -184,11 +202,14 @@ def _steered_model(
     falls = len(peaks) > 1 and max(peaks) > _AMPLITUDE_RATIO * min(peaks)
     approach = _approach_speed(records)
     if size.length and approach and any(one <= symbols for one in _DRIFT):
-        particulars = () if has_jet else hull_rudder_propeller(size, approach, _advance(records))
+        screws = 2 if _differ(records) else 1
+        particulars = () if has_jet else hull_rudder_propeller(size, approach, _advance(records), screws)
         if particulars:
+            name = _TWIN if screws > 1 else _SHALLOW if _is_shallow(records, size) else _MMG
             why = "forces of hull, propeller and rudder; abkowitz, without the last two, holds within the runs only"
             reason = "hull, wake, thrust and the flow at the rudder, near formulas by priors as wide as their errors"
-            return StartingModel(_MMG, why, _MMG_TERMS, reason, ("delta",), approach, particulars)
+            free = (*_MMG_TERMS, *_SHARES) if name == _SHALLOW and _show_depth(records) else _MMG_TERMS
+            return StartingModel(name, why, free, reason, ("delta",), approach, particulars)
         if is_rate_steady(records):
             why = "forces over drift, yaw rate, rudder; mmg goes farther with a propeller's rate (init --gear)"
             reason = f"the linear terms{', and the damping of fast turns, as rudder angles differ' if falls else ''}"
@@ -215,6 +236,28 @@ def _speed_ahead(record: Record) -> float:
     return start if start > _SLOW_START * reached else reached
 
 
+def _differ(records: Sequence[Record | None]) -> bool:
+    """Whether two rudders and two shafts are recorded, and a run shows one of these pairs apart."""
+    pairs = [(name, TWIN_DIFFERENCES[name]) for name in ("delta", "n")]
+    known = [record for record in records if record is not None]
+    if not all(difference in record for record in known for _, difference in pairs):
+        return False
+    return any(_peak(record[apart]) > _APART * _peak(record[mean], 0.0) for record in known for mean, apart in pairs)
+
+
+def _is_shallow(records: Sequence[Record | None], size: StatedSize) -> bool:
+    """Whether a run is over water so shallow that a ship of this size feels the bottom; 0 is no depth."""
+    depths = [record["depth"] for record in records if record is not None and "depth" in record]
+    return any(np.any((depth > 0.0) & (depth < _FELT * size.form.d)) for depth in depths)
+
+
+def _show_depth(records: Sequence[Record | None]) -> bool:
+    """Whether runs are over depths that differ: one depth does not part a coefficient from its change with depth."""
+    depths = [float(np.median(record["depth"])) for record in records if record is not None and "depth" in record]
+    known = [depth for depth in depths if depth > 0.0]
+    return bool(known) and (len(known) < len(depths) or max(known) > _OTHER_DEPTH * min(known))
+
+
 def _advance(records: Sequence[Record | None]) -> float:
     """The median over the runs of the way [m] that is made in a turn of the propeller; 0 where it is not recorded."""
     used = [record for record in records if record is not None and "n" in record]
@@ -234,8 +277,9 @@ def is_rate_steady(records: Sequence[Record | None]) -> bool:
     return max(middle - low, high - middle) <= _STEADY_RATE * abs(middle)
 
 
-def _peak(rudder: np.ndarray) -> float:
-    return max(float(np.percentile(np.abs(rudder - np.median(rudder)), _PEAK_PERCENTILE)), 1e-6)  # rad, for a ratio
+def _peak(rudder: np.ndarray, middle: float | None = None) -> float:
+    middle = float(np.median(rudder)) if middle is None else middle
+    return max(float(np.percentile(np.abs(rudder - middle), _PEAK_PERCENTILE)), 1e-6)  # rad, for a ratio
 
 
 # The rate at which residuals of a ship are taken: samples far closer than a ship moves cost time and add little.

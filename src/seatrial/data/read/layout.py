@@ -1,11 +1,14 @@
 """How a file is laid out: which column is which quantity, in which unit, frame, sign and place."""
 
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 from typing import Literal
+
+import numpy as np
 
 from seatrial.core.values import Array, InputError, channel_hint, quantity, si_unit
 from seatrial.core.values.arrays import Between, Kind
-from seatrial.core.values.notation import NOTATION, Quantity, positive_direction
+from seatrial.core.values.notation import NOTATION, TWIN_DIFFERENCES, Quantity, positive_direction
 
 # What a column of a log may be besides a channel of a record: measurements from which channels are derived.
 
@@ -59,7 +62,8 @@ class ColumnSpec:
         reference_point: metres forward of midship, at the scale of the file.
         label: the name to keep; empty: the file's own, or ``column k``.
         zero, span, factor, offset: the number in `unit` is (cell - zero) / span * factor + offset.
-        twin: column of the other of two rudders, nozzles or shafts: the channel is half the sum; empty: there is none.
+        twin: column of the other of two rudders, nozzles, buckets or shafts, that to starboard: the channel is half the
+            sum, or the difference where it is one of `TWIN_DIFFERENCES`; empty: there is none.
         kind: who set it: an order (``command``), a sensor (``measured``), or nobody says.
         between: how it runs between samples, ``held`` or ``straight``; empty: a command is held.
         declared: what the trial file declares a channel of its own to be; None: the notation table has it.
@@ -85,6 +89,33 @@ class ColumnSpec:
     def is_held(self) -> bool:
         """Whether a value holds until the next one, in place of a straight line between them."""
         return self.between == "held" if self.between else self.kind == "command"
+
+    @property
+    def is_difference(self) -> bool:
+        """Whether it is what two columns differ by, the first less its twin."""
+        return self.symbol in TWIN_DIFFERENCES.values()
+
+    def of_twins(self, first: Array, second: Array) -> Array:
+        """Return half the sum of the cells of two columns (n,), or what they differ by where that is the channel.
+
+        Where one is empty the other counts for both.
+        """
+        pair = np.stack([first, second])
+        filled = np.isfinite(pair)
+        is_empty = ~filled.any(axis=0)
+        if self.is_difference:
+            return np.where(is_empty, np.nan, np.where(filled.all(axis=0), first - second, 0.0))
+        return np.where(filled, pair, 0.0).sum(axis=0) / np.where(is_empty, np.nan, filled.sum(axis=0))
+
+    @property
+    def difference(self) -> "ColumnSpec":
+        """What twins differ by, to be read as their mean is; zeros cancel, and a turned angle has a turned difference.
+
+        Of a column of a channel of `TWIN_DIFFERENCES` that has a twin.
+        """
+        sign = 1.0 if self.declared_positive == self.quantity.positive else -1.0
+        symbol = TWIN_DIFFERENCES[self.symbol]
+        return replace(self, symbol=symbol, positive="", label="", zero=0.0, factor=sign * self.factor, offset=0.0)
 
     @property
     def quantity(self) -> Quantity:
@@ -220,6 +251,12 @@ class Layout:
             raise InputError(f"channel '{twice[0]}' is given twice; keep one column for each channel")
         if self.header_lines < 0:
             raise InputError(f"header_lines must be 0 or more, not {self.header_lines}")
+
+    def with_differences(self, symbols: Collection[str]) -> "Layout":
+        """Return the layout with what twins differ by, where that is among these symbols and has no column yet."""
+        wanted = {*symbols} - {column.symbol for column in self.columns}
+        twins = [column for column in self.columns if column.twin and TWIN_DIFFERENCES.get(column.symbol) in wanted]
+        return replace(self, columns=(*self.columns, *(column.difference for column in twins)))
 
     @property
     def has_named_columns(self) -> bool:

@@ -267,15 +267,14 @@ class RawTable:
     def numbers(self, column: ColumnSpec) -> Array:
         """The cells of a column as numbers, shape (n,); empty cells are NaN, 54°06.5'N is 54.108 (degrees).
 
-        Of twins half the sum, or that of the other where one is empty.
+        Of twins as `ColumnSpec.of_twins` has it.
 
         Raises:
             InputError: no such column, or a cell that is not a finite number (row and column named).
         """
         if column.twin:
             pair = [self.numbers(replace(column, source=name, twin="")) for name in (column.source, column.twin)]
-            filled = np.isfinite(pair)
-            return np.where(filled, pair, 0.0).sum(axis=0) / np.where(filled.any(axis=0), filled.sum(axis=0), np.nan)
+            return column.of_twins(*pair)
         cells = self.cells[self.column_index(column)]
         if isinstance(cells, np.ndarray) and cells.dtype.kind in "fiub":
             values = np.asarray(cells, dtype=np.float64)

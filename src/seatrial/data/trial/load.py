@@ -185,10 +185,12 @@ def trial_of_tables(
         base = home / expand_variables(file.data.folder)
         excitation = excitation_of(file.excitation, ship, model, base)
         runs = runs_of(file.records, file.data.folder, home, excitation, ship.length, declared) if file.records else ()
+        runs = tuple(run.with_differences(model.input_names) for run in runs)
         refuse_used_records(runs, results)
         if runs and file.follow is None:
             require_training_run(runs)
         stream = None if file.follow is None else stream_of(file.follow, base, home, excitation, ship.length, declared)
+        stream = None if stream is None else stream.with_differences(model.input_names)
         proposal = resolved_proposal(file.proposal, stream, home)
         if file.design is not None:
             refuse_unsuitable(file.design, model, ship.length)

@@ -28,8 +28,11 @@ from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
 # What a model needs, what is filled from where, and the tables of a trial file to begin with.
 
 # formulas that fill what nobody tested, in the order in which later ones win
+_MMG_SOURCES = ("yoshimura", "zhou", "interaction", "propulsion", "displacement")
 _SOURCES: Mapping[str, tuple[str, ...]] = {
-    "mmg": ("yoshimura", "zhou", "interaction", "propulsion", "displacement"),
+    "mmg": _MMG_SOURCES,
+    "mmg_twin": (*_MMG_SOURCES, "twin_screws"),
+    "mmg_shallow": (*_MMG_SOURCES, "shallow"),
 }
 _FORM = ("L", "B", "d", "C_b", "D_P", "H_R", "A_R")  # what the formulas take, and the model besides
 _PRIOR_PERCENT = (
@@ -115,7 +118,8 @@ def _words(parameter: Parameter) -> str:
 
 
 def _filled(model: Model, priors: Mapping[str, LiteraturePrior]) -> list[FilledValue]:
-    by_formula = [FilledValue(n, prior.source, prior.deviation) for n, prior in priors.items() if n in model.parameters]
+    filled = {n: prior for n, prior in priors.items() if n in model.parameters and n not in _FORM}
+    by_formula = [FilledValue(n, prior.source, prior.deviation) for n, prior in filled.items()]
     stated = {"L", *priors, *model.parameters.missing}
     fixed = [p for p in model.parameters if p.name not in stated]
     return by_formula + [FilledValue(p.name, _stated(p), 0.0) for p in fixed]

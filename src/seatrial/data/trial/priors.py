@@ -21,6 +21,9 @@ from seatrial.physics.hydro.empirical import (
 )
 from seatrial.physics.hydro.excitation import SEA_WATER
 from seatrial.physics.models.published import PARAMETER_SETS, SYMMETRIC, TYPICAL, TYPICAL_SPREAD, parameter_set
+from seatrial.physics.models.registry import family_of
+from seatrial.physics.models.screws import HOLTROP, TAYLOR, TWIN_SPREAD, twin_screw_formulas
+from seatrial.physics.models.shallow_water import FURUKAWA, KIJIMA, LI_WU, SHARE_SPREAD, share_name
 
 # Priors by the name of their source: published sets of coefficients, or formulas in the ship's main dimensions.
 
@@ -51,6 +54,15 @@ def _propulsion(form: HullForm, ship: Ship) -> EmpiricalEstimate:
     return propulsion(form, stated["pitch_ratio"], stated["area_ratio"], round(stated["blades"]))
 
 
+def _twin_screws(form: HullForm, ship: Ship) -> EmpiricalEstimate:
+    if "D_P" not in ship.particulars:
+        raise InputError(f"ship '{ship.name}' lacks D_P for priors_from = \"twin_screws\"; add it under [ship]")
+    values = twin_screw_formulas(form.C_b, form.B, form.d, ship.particulars["D_P"])
+    return EmpiricalEstimate(
+        values, f"w_P0 {TAYLOR}; t_P {HOLTROP}", valid=True, limits="any ship with two screws", deviations=TWIN_SPREAD
+    )
+
+
 def _displacement(form: HullForm, ship: Ship) -> EmpiricalEstimate:
     return displacement(form, ship.particulars.get("rho", SEA_WATER))
 
@@ -63,6 +75,14 @@ FORMULAS: dict[str, Callable[[HullForm, Ship], EmpiricalEstimate]] = {
     "interaction": _interaction,
     "propulsion": _propulsion,
     "displacement": _displacement,
+    "twin_screws": _twin_screws,
+    "shallow": lambda form, _: EmpiricalEstimate(
+        {**dict.fromkeys(map(share_name, SHARE_SPREAD), 1.0), "C_b": form.C_b},
+        f"{KIJIMA}; {LI_WU}; {FURUKAWA}; spread chosen",
+        valid=True,
+        limits="any ship",
+        deviations={share_name(name): sd for name, sd in SHARE_SPREAD.items()},
+    ),
     "wind": lambda _, __: EmpiricalEstimate(SYMMETRIC, TYPICAL, True, "any craft", TYPICAL_SPREAD),
 }
 _FORMULA_MODEL = "mmg"
@@ -71,7 +91,7 @@ _FORMULA_MODEL = "mmg"
 def literature_priors(names: Sequence[str], ship: Ship, model: str) -> dict[str, LiteraturePrior]:
     """Means and citations by parameter; where two sources name a parameter the later one wins.
 
-    Formulas are for the model mmg; published sets are for the model they were made for.
+    Formulas are for the model mmg; published sets are for the model they were made for. Models of its family take both.
 
     Raises:
         InputError: an unknown source, one for another model, or a ship without the particulars a formula needs.
@@ -98,7 +118,7 @@ def _require_source_for_model(name: str, model: str) -> None:
             f"model.priors_from: unknown source '{name}'{spelling_hint(name, sources)}; known: {', '.join(sources)}"
         )
     source_model = _FORMULA_MODEL if name in FORMULAS else parameter_set(name).model
-    if source_model != model:
+    if family_of(model) != source_model:
         raise InputError(
             f"model.priors_from: '{name}' gives coefficients of model '{source_model}', in its prime system, not of "
             f"'{model}'; choose '{source_model}', or write priors under [model.priors]"

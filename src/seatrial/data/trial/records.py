@@ -272,9 +272,22 @@ def load_records(trial: Trial, load: "RunLoader | None" = None) -> tuple[tuple[T
     unread = tuple(r for r in read if isinstance(r, Finding))
     for channel, deviation in trial.noise.items():
         _refuse_absurd_noise(channel, deviation, [r.record for r in records])
+    _refuse_aground(trial.model, [r.record for r in records])
     records, repeated = _without_copies(records)
     of_runs = (_answered(finding, trial) for record in records for finding in record.findings)
     return records, (*trial.findings, *unread, *repeated, *of_runs, *_craft_findings(trial, records))
+
+
+def _refuse_aground(model: Model, records: Sequence[Record]) -> None:
+    draught = model.parameters.value_of("d", 0.0) if "depth" in model.input_names else 0.0
+    for record in records:
+        depths = record["depth"][record["depth"] > 0.0] if "depth" in record else np.empty(0)
+        if depths.size and (least := float(np.min(depths))) <= draught:
+            raise InputError(
+                f"record '{record.name}': the water is {least:.3g} m deep where the ship draws {draught:.3g} m; depth "
+                "is from the surface to the bottom: of a sounder in the keel add "
+                f"offset = {draught:.3g} under channels.depth"
+            )
 
 
 def _answered(finding: Finding, trial: Trial) -> Finding:

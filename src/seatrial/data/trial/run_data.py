@@ -2,7 +2,7 @@
 
 import fnmatch
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import lru_cache
@@ -57,6 +57,11 @@ class RunFiles:
     def of_file(cls, path: Path, layout: Layout) -> "RunFiles":
         """Return a single file, named without its ending."""
         return cls(run_name(path), (SourceFile(path, layout),))
+
+    def with_differences(self, symbols: Collection[str]) -> "RunFiles":
+        """Return the files with what twins differ by as channels, where that is among these symbols."""
+        files = (replace(file, layout=file.layout.with_differences(symbols)) for file in self.files)
+        return replace(self, files=tuple(files))
 
     @property
     def states_antenna(self) -> bool:

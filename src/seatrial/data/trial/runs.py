@@ -370,6 +370,7 @@ def _column(symbol: str, column: ChannelColumn, where: str, declared: DeclaredQu
 
 # The table `[follow]` of a trial file into a `Stream`: its settings, paths resolved, columns as in `[[records]]`.
 
+_TEXT_SOURCES = (StreamSource.FILE, StreamSource.STDIN, StreamSource.UDP)
 _FILE_SOURCES = (StreamSource.FILE, StreamSource.NMEA_FILE)
 _UDP_SOURCES = tuple(source for source in StreamSource if source.endswith("udp"))
 _HOST_PATTERN = re.compile(r"[A-Za-z0-9.:_-]+")
@@ -396,8 +397,11 @@ def stream_of(
             "follow.waves.sea: a sea known by its spectrum alone cannot be followed sample by sample; record the "
             "elevation zeta, or run 'seatrial identify' on the whole record"
         )
-    if twins := [symbol for symbol, column in table.channels.items() if column.twin]:
-        raise InputError(f"follow.channels.{twins[0]}: half the sum of twins is read from a file; follow one of both")
+    twins = [symbol for symbol, column in table.channels.items() if column.twin]
+    if twins and table.source not in _TEXT_SOURCES:
+        raise InputError(
+            f"follow.channels.{twins[0]}: twins are read from lines of a text file or of datagrams; follow one of both"
+        )
     if not _HOST_PATTERN.fullmatch(table.host):
         raise InputError(f"follow.host = '{table.host}' is no address; give one such as 127.0.0.1")
     file = None if table.file is None else data_folder / expand_variables(str(table.file))

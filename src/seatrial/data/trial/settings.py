@@ -1,7 +1,7 @@
 """Settings of estimator, search, comparison, proposal and stream: tables of a trial file, values in Python."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
@@ -426,3 +426,7 @@ class Stream(StreamSettings):
     layout: InstanceOf[Layout]
     name: str = "stream"
     waves: InstanceOf[WaveEncounter] | None = None
+
+    def with_differences(self, symbols: Collection[str]) -> Self:
+        """Return the stream with what twins differ by as channels, where that is among these symbols."""
+        return replace(self, layout=self.layout.with_differences(symbols))

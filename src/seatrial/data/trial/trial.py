@@ -1,10 +1,10 @@
 """A trial: ship, runs, model and settings, from a trial file or made in Python."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Finding, ForcePoints, Record, RecordKind, Ship
@@ -63,6 +63,10 @@ class Run:
     source: str = ""
     waves: WaveEncounter | None = None
     kind: RecordKind | None = None
+
+    def with_differences(self, symbols: Collection[str]) -> Self:
+        """Return the run with what twins differ by as channels, where that is among these symbols."""
+        return replace(self, data=self.data.with_differences(symbols)) if isinstance(self.data, RunFiles) else self
 
     def __post_init__(self) -> None:
         if not self.session:

@@ -35,6 +35,7 @@ from seatrial.physics.hydro.free_roll import (
 )
 from seatrial.physics.manoeuvres import measures
 from seatrial.physics.models.candidate_structures import PHYSICAL_SIGNS
+from seatrial.physics.models.registry import family_of
 from seatrial.physics.models.thrust_orders import inertia_matrix, thrust_configuration
 from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout, layout_of
 from seatrial.physics.simulate.steer import RUDDER_RATE, rudder_rate
@@ -261,7 +262,7 @@ def objections(
     records: those that were fitted; the damping of roll is judged over the amplitudes that they show. errors: standard
     deviation that estimated values of the craft put into a coefficient; 0 where it is not named.
     """
-    signs, parameters = PHYSICAL_SIGNS.get(model.name, {}), model.parameters
+    signs, parameters = PHYSICAL_SIGNS.get(family_of(model.name), {}), model.parameters
     turned = [
         f"{name} {parameters[name].value:.2g} is {'negative' if sign > 0 else 'positive'}"
         for name, sign in signs.items()

@@ -33,6 +33,7 @@ from seatrial.physics.models.candidate_structures import (
     SEGMENT_FACTORS,
     with_terms,
 )
+from seatrial.physics.models.registry import family_of
 
 # Choice of a model by cross-validation over whole runs, and the spread of the models that the runs cannot distinguish.
 
@@ -159,7 +160,7 @@ def variants(model: Model, family: ModelFamily | None, is_segmented: bool) -> tu
     family: what the trial declares; without it the default family of this model.
     """
     free, priors = set(model.parameters.free_names), any(p.prior for p in model.parameters.free)
-    built_in = {n: names for n, names in FREED_PARAMETERS.get(model.name, {}).items() if _has(model, names)}
+    built_in = {n: names for n, names in FREED_PARAMETERS.get(family_of(model.name), {}).items() if _has(model, names)}
     structures = built_in if family is None else family.structures
     factors = (PRIOR_FACTORS, SEGMENT_FACTORS) if family is None else ((), ())
     first = "as in the trial"
@@ -412,7 +413,7 @@ def roll_structures(model: Model, family: ModelFamily | None) -> dict[str, Model
         for name, freed in family.structures.items():
             structures[name] = model.with_parameters(parameters.freed(*freed))
     else:
-        house = OMITTED_PARAMETERS.get(model.name, {})
+        house = OMITTED_PARAMETERS.get(family_of(model.name), {})
         gone = {n for dropped in house.values() for n in dropped if n not in parameters.free_names}
         absent = {n for n in gone if parameters[n].value == 0.0}
         for name, dropped in house.items():

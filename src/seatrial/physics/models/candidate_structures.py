@@ -6,7 +6,7 @@ from types import MappingProxyType
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Parameters
-from seatrial.physics.models.registry import model_named
+from seatrial.physics.models.registry import family_of, model_named
 
 # Families of models worth comparing on the same records: which parameters a structure frees beyond the trial's own.
 
@@ -60,7 +60,8 @@ OMITTED_PARAMETERS: Mapping[str, Mapping[str, tuple[str, ...]]] = MappingProxyTy
 
 def structural_terms(model_name: str) -> frozenset[str]:
     """Return the parameters that a structure of this model's family may have or lack, and what surge may need."""
-    families = (FREED_PARAMETERS.get(model_name, {}), OMITTED_PARAMETERS.get(model_name, {}))
+    family = family_of(model_name)
+    families = (FREED_PARAMETERS.get(family, {}), OMITTED_PARAMETERS.get(family, {}))
     return frozenset(SURGE_TERMS).union(*(names for family in families for names in family.values()))
 
 
@@ -69,7 +70,7 @@ def candidate_terms(model: Model) -> tuple[str, ...]:
 
     Of a model without a family these are all parameters that it holds at 0: each model declares its candidates so.
     """
-    has_family = model.name in FREED_PARAMETERS or model.name in OMITTED_PARAMETERS
+    has_family = family_of(model.name) in {*FREED_PARAMETERS, *OMITTED_PARAMETERS}
     declared = structural_terms(model.name) if has_family else frozenset(model.parameters.names)
     return tuple(p.name for p in model.parameters if p.free or (p.name in declared and p.value == 0.0))
 

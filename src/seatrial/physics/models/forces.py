@@ -83,6 +83,7 @@ class RudderFlow:
         U, beta: speed and drift angle of the craft [m/s, rad]; r_L: yaw rate times length [m/s].
         U_0: speed below which denominators are rounded off; rho: density of water.
         n, n_D: rate of the propeller, and that times its diameter D_P; u_P: its axial inflow [m/s]; thrust: its own.
+        straightening: factor on gamma_R, of the depth of the water.
     """
 
     U: sp.Symbol
@@ -95,6 +96,7 @@ class RudderFlow:
     D_P: sp.Symbol
     u_P: sp.Symbol
     thrust: sp.Symbol
+    straightening: sp.Expr = sp.S.One
 
 
 @dataclass(frozen=True)
@@ -122,10 +124,14 @@ class RudderForce:
 
 
 def normal_force(
-    sheet: Sheet, flow: RudderFlow, rudder: RudderCoefficients, delta: sp.Symbol, suffix: str = ""
-) -> RudderForce:
-    """Write the normal force at the angle delta [rad, positive turns to starboard]; bindings end in `suffix`."""
-    u_R, v_R = _inflow(sheet, flow, rudder, suffix)
+    sheet: Sheet, flow: RudderFlow, rudder: RudderCoefficients, delta: sp.Expr, suffix: str = "", *,
+    is_mirrored: bool = False,
+) -> RudderForce:  # fmt: skip
+    """Write the normal force at the angle delta [rad, positive turns to starboard]; bindings end in `suffix`.
+
+    is_mirrored: whether left and right of the flow change places in its coefficients.
+    """
+    u_R, v_R = _inflow(sheet, flow, rudder, suffix, is_mirrored=is_mirrored)
     sine = sheet.bind(f"sin_delta{suffix}", sp.sin(delta), "of the rudder angle")
     cosine = sheet.bind(f"cos_delta{suffix}", sp.cos(delta), "of the rudder angle")
     U_R = sheet.bind(f"U_R{suffix}", sp.sqrt(u_R**2 + v_R**2 + flow.U_0**2), f"{YASUKAWA}, U_R", "m/s")
@@ -134,7 +140,9 @@ def normal_force(
     return RudderForce(sheet.bind(f"F_N{suffix}", normal, source, "N"), sine, cosine)
 
 
-def _inflow(sheet: Sheet, flow: RudderFlow, rudder: RudderCoefficients, suffix: str) -> tuple[sp.Symbol, sp.Symbol]:
+def _inflow(
+    sheet: Sheet, flow: RudderFlow, rudder: RudderCoefficients, suffix: str, *, is_mirrored: bool
+) -> tuple[sp.Symbol, sp.Symbol]:
     def bind(name: str, expression: sp.Expr, source: str, unit: str = "1") -> sp.Symbol:
         return sheet.bind(f"{name}{suffix}", expression, source, unit)
 
@@ -155,9 +163,10 @@ def _inflow(sheet: Sheet, flow: RudderFlow, rudder: RudderCoefficients, suffix: 
     root = bind("u_R_abs", sp.sqrt(square**2 + flow.U_0**4), EXTENSION, "m^2/s^2")
     u_R = bind("u_R", square / sp.sqrt(root), f"{YASUKAWA}, u_R", "m/s")
     v_B = bind("v_B", flow.U * flow.beta - rudder.l_R * flow.r_L, f"{YASUKAWA}, U beta_R", "m/s")
-    side = sp.Piecewise((rudder.gamma_plus, v_B > 0), (rudder.gamma_minus, True))
+    plus, minus = rudder.gamma_plus, rudder.gamma_minus
+    side = sp.Piecewise((minus if is_mirrored else plus, v_B > 0), (plus if is_mirrored else minus, True))
     gamma_R = bind("gamma_R", side, f"{YASUKAWA}, gamma_R by the side of beta_R")
-    return u_R, bind("v_R", gamma_R * v_B, f"{YASUKAWA}, v_R", "m/s")
+    return u_R, bind("v_R", flow.straightening * gamma_R * v_B, f"{YASUKAWA}, v_R", "m/s")
 
 
 # Force of the wind on areas above water: a Fourier series in its apparent direction, shared by the models.

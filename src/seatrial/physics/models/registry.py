@@ -5,7 +5,7 @@ import runpy
 import subprocess
 import sys
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
@@ -38,10 +38,13 @@ def _thrusters(layout: str = "") -> "Model":
 MODELS: dict[str, Callable[[], "Model"]] = {
     "waterjet": lambda: models.waterjet(),
     "waterjet_candidates": lambda: models.waterjet_candidates(),
+    "waterjet_twin": lambda: models.waterjet_twin(),
     "nomoto": lambda: models.nomoto(),
     "nomoto2": lambda: models.nomoto2(),
     "abkowitz": lambda: models.abkowitz(),
     "mmg": lambda: models.mmg(),
+    "mmg_shallow": lambda: models.mmg_shallow(),
+    "mmg_twin": lambda: models.mmg_twin(),
     "abkowitz_roll": lambda: models.abkowitz_roll(),
     "mmg_roll": lambda: models.mmg_roll(),
     "son_nomoto": lambda: models.son_nomoto(),
@@ -52,8 +55,15 @@ MODELS: dict[str, Callable[[], "Model"]] = {
     "section": lambda: models.section(),
     "thrusters": _thrusters,
 }
+FAMILIES: Mapping[str, str] = {"mmg_twin": "mmg", "mmg_shallow": "mmg", "waterjet_twin": "waterjet"}
+"""Model -> the one whose coefficients, primes and candidate terms it shares."""
 LAYOUT_MODELS: dict[str, Callable[[str], "Model"]] = {"thrusters": _thrusters}
 """Models whose equations depend on a layout; without one they have a default."""
+
+
+def family_of(name: str) -> str:
+    """Return the model whose coefficients, primes and candidate terms a model shares; itself where there is none."""
+    return FAMILIES.get(name, name)
 
 
 def _require_model(model: object, where: str) -> "Model":

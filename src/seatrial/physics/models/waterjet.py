@@ -4,16 +4,21 @@ Origin at G, x forward, y starboard, psi clockwise. A positive nozzle angle give
 so turns the craft to port.
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 
 import sympy as sp
 
 from seatrial.core.equations import Model, Sheet
-from seatrial.physics.models.forces import derivative_meaning, pose_rates
+from seatrial.core.values.notation import TWIN_DIFFERENCES
+from seatrial.physics.models.forces import PlanarForce, derivative_meaning, pose_rates
 
 SONG = "Song et al. 2025, doi 10.19693/j.issn.1673-3185.03832"
 ZHOU = "Zhou et al. 1983, through Song et al. 2025"
+MOMENTUM = "momentum theorem of the jet that the bucket turns"
 RHO = 1025.0  # kg/m^3, sea water
+JET_AREA = 0.035  # m^2, of all jets of the published craft; chosen
 LENGTH, DRAUGHT, MASS = 9.8, 0.71, 5540.0  # m, m, kg; Song et al. 2025, principal particulars
 
 # Table 2, column CFD; N_v is -0.1708: with the printed sign the steady turn reverses and no zigzag finishes
@@ -48,9 +53,71 @@ def waterjet_candidates() -> Model:
     return _craft("waterjet_candidates", CANDIDATE_TERMS)
 
 
-def _craft(name: str, candidate_terms: tuple[str, ...]) -> Model:
+@cache
+def waterjet_twin() -> Model:
+    """Return the eleven-coefficient model with two equal nozzles and a reversing bucket behind each.
+
+    As `waterjet`, with delta and v_j the means of both sides and the inputs bucket, the mean share of the jets that
+    the buckets send forward (0 to 1), and the differences of all three, port less starboard; those that are not
+    recorded are zero. A_j is the area of one jet, y_T [m] its place off the centre line.
+    """
+    return _craft("waterjet_twin", (), is_twin=True)
+
+
+@dataclass(frozen=True)
+class _Jet:
+    """One nozzle: angle, jet velocity, share that its bucket sends forward, place to starboard, suffix of its names."""
+
+    delta: sp.Expr
+    v_j: sp.Expr
+    bucket: sp.Expr = sp.S.Zero
+    y: sp.Expr = sp.S.Zero
+    suffix: str = ""
+
+
+def _twin_jets(sheet: Sheet, delta: sp.Symbol, v_j: sp.Symbol) -> tuple[_Jet, _Jet]:
+    bucket = sheet.input("bucket")
+    delta_d = sheet.input(TWIN_DIFFERENCES["delta"])
+    v_j_d, bucket_d = (sheet.input(TWIN_DIFFERENCES[name]) for name in ("v_j", "bucket"))
+    y_T = sheet.parameter("y_T", 0.12 * LENGTH, "m", "nozzles off the centre line", "chosen")
+    port, starboard = (
+        _Jet(delta + s * delta_d / 2, v_j + s * v_j_d / 2, bucket + s * bucket_d / 2, -s * y_T, suffix)
+        for suffix, s in (("_port", 1), ("_starboard", -1))
+    )
+    return port, starboard
+
+
+def _jet_forces(sheet: Sheet, jets: Sequence[_Jet], unit: sp.Expr, alpha_u: sp.Expr, x_T: sp.Symbol) -> PlanarForce:
+    """Write the forces of nozzles with buckets; unit: rho A_j.
+
+    The momentum that leaves: of the share b of a jet, which its bucket turns, c_b goes straight ahead.
+    """
+    c_b = sheet.parameter("c_b", 0.6, "1", "part of its momentum with which a turned jet goes ahead", "chosen")
+    X, Y, N = [], [], []
+    for jet in jets:
+        cosine, sine, reach = sp.cos(jet.delta), sp.sin(jet.delta), unit * jet.v_j**2 * jet.bucket
+        T = sheet.bind(f"T_jet{jet.suffix}", unit * jet.v_j * (jet.v_j - alpha_u), "eq. (3)", "N")
+        X.append(sheet.bind(f"X_P{jet.suffix}", T * cosine - reach * (cosine + c_b), f"eq. (3); {MOMENTUM}", "N"))
+        Y.append(sheet.bind(f"Y_P{jet.suffix}", (T - reach) * sine, f"eq. (3); {MOMENTUM}", "N"))
+        N.append(x_T * Y[-1] - jet.y * X[-1])
+    X_P = sheet.bind("X_P", sp.Add(*X), "both nozzles", "N")
+    Y_P = sheet.bind("Y_P", sp.Add(*Y), "both nozzles", "N")
+    return PlanarForce(X_P, Y_P, sheet.bind("N_P", sp.Add(*N), "moments of both nozzles", "N m"))
+
+
+def _single_jet(
+    sheet: Sheet, delta: sp.Symbol, unit: sp.Expr, v_j: sp.Symbol, alpha_u: sp.Expr, x_T: sp.Symbol
+) -> PlanarForce:
+    T = sheet.bind("T_jet", unit * v_j * (v_j - alpha_u), "eq. (3)", "N")
+    X_P = sheet.bind("X_P", T * sp.cos(delta), "eq. (3)", "N")
+    Y_P = sheet.bind("Y_P", T * sp.sin(delta), "eq. (3), alpha u in place of alpha v", "N")
+    return PlanarForce(X_P, Y_P, sheet.bind("N_P", x_T * Y_P, "eq. (3)", "N m"))
+
+
+def _craft(name: str, candidate_terms: tuple[str, ...], *, is_twin: bool = False) -> Model:
     """The craft with the terms of table 2 and these candidates."""
-    sheet = Sheet(name, SONG, "waterjet craft, simplified MMG")
+    meaning = "waterjet craft with two nozzles and buckets" if is_twin else "waterjet craft, simplified MMG"
+    sheet = Sheet(name, SONG, meaning)
     u, v, r, psi, x0, y0 = sheet.states("u v r psi x0 y0")
     delta = sheet.input("delta", positive="port")
     v_j = sheet.input("v_j")
@@ -62,7 +129,7 @@ def _craft(name: str, candidate_terms: tuple[str, ...]) -> Model:
     m_x = sheet.parameter("m_x", 0.0281 * MASS, "kg", "surge added mass", ZHOU)
     m_y = sheet.parameter("m_y", 0.785 * MASS, "kg", "sway added mass", ZHOU)
     J_z = sheet.parameter("J_z", 0.0699 * MASS * LENGTH**2, "kg m^2", "yaw added inertia", ZHOU)
-    A_j = sheet.parameter("A_j", 0.035, "m^2", "jet area", "chosen")
+    A_j = sheet.parameter("A_j", JET_AREA / 2 if is_twin else JET_AREA, "m^2", "jet area", "chosen")
     alpha = sheet.parameter("alpha", 1.0, "1", "inflow fraction of the jet", "chosen")
     x_T = sheet.parameter("x_T", -0.45 * LENGTH, "m", "nozzle position forward of G", "chosen")
 
@@ -105,13 +172,14 @@ def _craft(name: str, candidate_terms: tuple[str, ...]) -> Model:
         "eq. (2), r|r| corrected",
         "N m",
     )
-    T = sheet.bind("T_jet", rho * A_j * v_j * (v_j - alpha * u), "eq. (3)", "N")
-    X_P = sheet.bind("X_P", T * sp.cos(delta), "eq. (3)", "N")
-    Y_P = sheet.bind("Y_P", T * sp.sin(delta), "eq. (3), alpha u in place of alpha v", "N")
-    N_P = sheet.bind("N_P", x_T * Y_P, "eq. (3)", "N m")
-    X = sheet.bind("X_sum", X_H + X_P, "all forces, eq. (1)", "N")
-    Y = sheet.bind("Y_sum", Y_H + Y_P, "all forces, eq. (1)", "N")
-    N = sheet.bind("N_sum", N_H + N_P, "all moments, eq. (1)", "N m")
+    unit, alpha_u = rho * A_j, alpha * u
+    if is_twin:
+        by = _jet_forces(sheet, _twin_jets(sheet, delta, v_j), unit, alpha_u, x_T)
+    else:
+        by = _single_jet(sheet, delta, unit, v_j, alpha_u, x_T)
+    X = sheet.bind("X_sum", X_H + by.X, "all forces, eq. (1)", "N")
+    Y = sheet.bind("Y_sum", Y_H + by.Y, "all forces, eq. (1)", "N")
+    N = sheet.bind("N_sum", N_H + by.N, "all moments, eq. (1)", "N m")
     X_m = sheet.bind("X_m", (m + m_y) * v * r + X, "eq. (1), with the centripetal terms", "N")
     Y_m = sheet.bind("Y_m", -(m + m_x) * u * r + Y, "eq. (1), with the centripetal terms, u r corrected", "N")
     N_m = sheet.bind("N_m", N, "eq. (1), no centripetal terms about G", "N m")

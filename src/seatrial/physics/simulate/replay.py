@@ -21,14 +21,16 @@ from seatrial.core.values import (
     spelling_hint,
 )
 from seatrial.core.values.arrays import Between
-from seatrial.core.values.notation import OPPOSITE
+from seatrial.core.values.notation import OPPOSITE, TWIN_DIFFERENCES
 from seatrial.physics.manoeuvres.recognition import TRUE
 from seatrial.physics.simulate.batch import error_over_range, sufficient_substeps
 from seatrial.physics.simulate.linear import batch_class
 
 # Between records and a model's arrays: where inputs take the model's signs, and lose them again.
 
-ZERO_BY_DEFAULT = ("wind_speed", "wind_direction", "F3", "M5", "delta_f1", "delta_f2", "alpha_w", "alpha_f")
+ZERO_BY_DEFAULT = ("wind_speed", "wind_direction", "F3", "M5", "delta_f1", "delta_f2", "alpha_w", "alpha_f",
+                   "depth", "bucket", *TWIN_DIFFERENCES.values())  # fmt: skip
+"""Inputs that are zero where they are not recorded; water of depth zero is deep."""
 
 
 def inputs_of(model: Model, record: Record) -> Array:
