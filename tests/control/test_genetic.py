@@ -24,8 +24,8 @@ from seatrial.physics.loops import Preamplifier
 from seatrial_studies.yu2014.published import performance
 from seatrial_studies.yu2014.searches import GeneticSearchSetting, search_over_seeds
 
-SMALL = GeneticTuning(population=20, generations=10, seeds=3)
-TINY = Effort(population=40, generations=10, refined=4, fill_rounds=2, neighbours=2000)
+SMALL = GeneticTuning(seeds=3)
+TINY = Effort(refined=4, fill_rounds=2, neighbours=2000)
 
 
 def test_the_search_is_that_of_the_study_bit_for_bit() -> None:

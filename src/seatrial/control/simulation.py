@@ -1,7 +1,7 @@
 """Controllers simulated in what disturbs them, with what their actuators cannot do."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import accumulate
@@ -53,7 +53,7 @@ def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: A
         InputError: the task has no sea or no trials, or the sea does not move the ship.
         DivergedError: the loop runs away.
     """
-    reductions, energies = _seaway_trials(task, loop, gains, seed)
+    reductions, energies = _seaway_trials(task, loop, gains, seed, actuator_stages(task))
     seaway, trials = _sea_and_trials(task)
     steered, everything = closed_loop(task, loop, gains, seaway.U, trials.dt), _actuator_limits(task)
     met = disturbance_series(seaway, trials, seed)[0]
@@ -68,28 +68,37 @@ def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: A
     return SeawaySimulation(name, linear, limited, stalled, shown, drive, drag)
 
 
-def seaway_reductions(task: TuningTask, loop: TransferLoop, gains: Array, seed: int) -> Array:
-    """Return reductions of the output's rms in each sea against no control there, (seeds, 3).
+def seaway_reductions(
+    task: TuningTask, loop: TransferLoop, gains: Array, seed: int, stages: Sequence[ActuatorLimits] | None = None
+) -> Array:
+    """Return reductions of the output's rms in each sea against no control there, (seeds, stages).
 
-    Columns: without limits, with those of angle and rate, with stall as well. Raises what `simulate_in_seaway` does.
+    stages: limits of the actuator, by default those of `actuator_stages`. Raises what `simulate_in_seaway` does.
     """
-    return _seaway_trials(task, loop, gains, seed)[0]
+    return _seaway_trials(task, loop, gains, seed, actuator_stages(task) if stages is None else stages)[0]
 
 
-def _seaway_trials(task: TuningTask, loop: TransferLoop, gains: Array, seed: int) -> tuple[Array, Array]:
-    """Return `seaway_reductions`, and J in an hour by drive and drag with all limits, (seeds, 2); nan undeclared."""
+def actuator_stages(task: TuningTask) -> tuple[ActuatorLimits, ActuatorLimits, ActuatorLimits]:
+    """Return the actuator without limits, with those of angle and rate, and with stall as well."""
+    everything = _actuator_limits(task)
+    return UNLIMITED, everything.without_stall, everything
+
+
+def _seaway_trials(
+    task: TuningTask, loop: TransferLoop, gains: Array, seed: int, stages: Sequence[ActuatorLimits]
+) -> tuple[Array, Array]:
+    """Return `seaway_reductions`, and J in an hour by drive and drag at the last stage, (seeds, 2); nan undeclared."""
     seaway, trials = _sea_and_trials(task)
-    steered, everything = closed_loop(task, loop, gains, seaway.U, trials.dt), _actuator_limits(task)
+    steered = closed_loop(task, loop, gains, seaway.U, trials.dt)
     seas = disturbance_series(seaway, trials, seed)
 
     def of_one(number: int) -> Array:
-        stages = (UNLIMITED, everything.without_stall, everything)
         runs = [_trial(task, steered, seas[number], seaway, limits, seed + number) for limits in stages]
         return np.array([*(rms for rms, _ in runs), *_hourly_energies(task, steered, runs[-1][1], seaway.U)])
 
     free = np.array(_uncontrolled_rms(task, seaway, seed))
     columns = np.array(map_in_threads(of_one, range(len(seas))))
-    return 1.0 - columns[:, :3] / free[:, None], columns[:, 3:]
+    return 1.0 - columns[:, :-2] / free[:, None], columns[:, -2:]
 
 
 def _hourly_energies(task: TuningTask, run: ClosedLoop, angles: Array, U: float) -> tuple[float, float]:

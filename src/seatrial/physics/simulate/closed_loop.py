@@ -142,12 +142,10 @@ def sample_noise(sampling: Sampling, count: int, seed: int) -> Array:
     return sampling.noise * np.random.default_rng([seed, _NOISE_STREAM]).standard_normal(count)
 
 
-def sampled_body(
-    loop: TransferLoop, gains: Array, dt: float, rate: float, noise: Array
-) -> tuple[Array, Mapping[int, float]]:
-    """Return what `sampled_controller` reads behind the head of its memory, and the entries of the head for it.
+def sampled_laws(loop: TransferLoop, gains: Array, dt: float) -> tuple[Array, Mapping[int, float]]:
+    """Return what `sampled_controller` reads of the loop behind the head of its memory, and the head's entries for it.
 
-    rate: of the actuator, per second; noise: of each sample.
+    The last entries are the queue of the dead time; the noise of the samples stands behind it.
     """
     assert loop.sampling is not None
     T, every = loop.sampling.sample_s, steps_a_sample(loop.sampling, dt)
@@ -163,7 +161,6 @@ def sampled_body(
     servo_at = feedback.HEAD_SIZE + len(sensor)
     blocks_at = servo_at + len(servo)
     queue_at = blocks_at + len(blocks)
-    body = np.concatenate([sensor, servo, blocks, np.zeros(queue), noise])
     values = {
         feedback.EVERY: every,
         feedback.SENSOR: feedback.HEAD_SIZE,
@@ -177,9 +174,8 @@ def sampled_body(
         feedback.QUEUE_SIZE: queue,
         feedback.NOISE: queue_at + queue,
         feedback.RESOLUTION: loop.sampling.resolution,
-        feedback.SAMPLE_SLEW: rate * T,
     }
-    return body, values
+    return np.concatenate([sensor, servo, blocks, np.zeros(queue)]), values
 
 
 def _block(block: Block, T: float, gain: float, holds: float) -> Array:
@@ -387,14 +383,12 @@ class ClosedLoop:
 
         noise: of each sample that a sampled controller takes.
         """
-        count = len(disturbance)
-        if self.loop.sampling is None:
-            n, laws = self._controller_laws
-            body, own = np.concatenate([laws, np.zeros(2 * n)]), {feedback.CONTROLLER_ORDER: float(n)}
-        else:
-            samples = -(-count // steps_a_sample(self.loop.sampling, self.dt))
-            heard = sample_noise(self.loop.sampling, samples, _NOISE_SEED) if noise is None else noise[:samples]
-            body, own = sampled_body(self.loop, self.gains, self.dt, limits.rate, heard)
+        count, sampling = len(disturbance), self.loop.sampling
+        body, own = self._laws
+        if sampling is not None:
+            samples = -(-count // steps_a_sample(sampling, self.dt))
+            heard = sample_noise(sampling, samples, _NOISE_SEED) if noise is None else noise[:samples]
+            body, own = np.concatenate([body, heard]), {**own, feedback.SAMPLE_SLEW: limits.rate * sampling.sample_s}
         place, disturbed = self._input_index(self.actuator), self._input_index(self.disturbance_input)
         values = {
             feedback.COUNT: count,
@@ -418,11 +412,13 @@ class ClosedLoop:
         return np.concatenate([head, body, *series])
 
     @cached_property
-    def _controller_laws(self) -> tuple[int, Array]:
-        """The controller's order and what `linear_controller` reads of it: free, with slow states held, their rate."""
+    def _laws(self) -> tuple[Array, Mapping[int, float]]:
+        """What `command` reads of the loop behind the head, and the head's entries for it, the same in every run."""
+        if self.loop.sampling is not None:
+            return sampled_laws(self.loop, self.gains, self.dt)
         made = controller_state_space(self.loop, self.gains)
-        laws = (made.discretised(self.dt, is_holding=held) for held in (False, True))
-        return len(made.b), np.concatenate([*laws, made.slow_rate])
+        n, laws = len(made.b), (made.discretised(self.dt, is_holding=held) for held in (False, True))
+        return np.concatenate([*laws, made.slow_rate, np.zeros(2 * n)]), {feedback.CONTROLLER_ORDER: float(n)}
 
     def _input_index(self, name: str) -> int:
         """Return the place of an input; -1 of none."""
