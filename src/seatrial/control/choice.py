@@ -1,7 +1,7 @@
 """One controller out of the fronts, with reasons: by simulation where there is one, else the compromise."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, reduce
 from itertools import pairwise
@@ -131,10 +131,10 @@ class _SelectionSeas:
         few, others = self._heats
         left = _equals([_met(one, few) for one in candidates])
         most = _first_kept(left, _reduction_first)
-        whole = {one: _met(one, others) for one in left if _benefit(most, one) <= 0.0}
+        whole = {one: _met(one, others) for one in left if _benefit(most, one) <= 0.0 and one.is_loss_small}
         for one in sorted(left, key=_preference):
             met = whole[one] = whole.get(one) or _met(one, others)
-            if met.is_loss_small and met in _equals([*whole.values()]):
+            if met in _equals([*whole.values()]) and met.is_loss_small:
                 break
         return [*whole.values()]
 
