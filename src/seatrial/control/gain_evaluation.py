@@ -325,16 +325,14 @@ def motion_and_rate_variances(evaluator: GainEvaluator, gains: Array) -> Array:
 
 # The gains that leave least of the output within the restrictions: spread points, the best pressed by gradients.
 
-_SAMPLES, _STARTS = 4096, 3  # Sobol points, and those that are refined; chosen
+_SAMPLES, _STARTS = 4096, 3  # spread points, and those that are refined; chosen
 _RESTARTS = 5  # searches from the best, until one finds nothing better; chosen
 
 
 def spread_gains(evaluator: GainEvaluator, seed: int) -> Array:
-    """Return gains spread over their box, (n, g): Sobol points, half of them towards small gains."""
-    from scipy.stats import qmc
-
+    """Return gains spread over their box at random, (n, g), half of them towards small gains."""
     _, (low, high) = free_gain_bounds(evaluator)
-    unit = qmc.Sobol(len(low), seed=seed).random(_SAMPLES)
+    unit = np.random.default_rng(seed).random((_SAMPLES, len(low)))
     unit[::2] **= 3.0
     return all_gains(evaluator, low + unit * (high - low))
 

@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import accumulate
 
 import numpy as np
 from scipy.special import stdtrit
@@ -13,6 +12,7 @@ from seatrial.control.gain_evaluation import gain_evaluator
 from seatrial.control.task import OUTPUT, Seaway, SimulationSettings, SlowDisturbance, TuningTask
 from seatrial.core.results.tuning import DisturbanceSimulation, PairedDifference, SeawaySimulation
 from seatrial.core.values import Array, Channel, DivergedError, InputError, Record, frozen
+from seatrial.numerics.kernels.linear import replay
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.hydro.excitation import Complex, encounter_frequency
 from seatrial.physics.loops import LoopSignal, TransferLoop, WaveEffect
@@ -451,7 +451,12 @@ def gauss_markov(bandwidth: float, dt: float, count: int, rng: np.random.Generat
     """Return exact steps of a first-order Gauss-Markov process of unit rms (Gelb 1974, section 3.8), (count,)."""
     stay = math.exp(-bandwidth * dt)
     kicks = math.sqrt(1.0 - stay**2) * rng.standard_normal(count)
-    return np.fromiter(accumulate(kicks.tolist(), lambda now, kick: stay * now + kick), np.float64, count)
+    one, last, out = np.ones((1, 1, 1)), np.full((1, 1, 1), stay), np.empty((count, 1))
+    replay(
+        last, one, 0.0 * one, last, one, np.zeros(1, dtype=np.int64), kicks[:, None], np.array([0, count]), 1,
+        np.zeros((1, 1)), out, np.full(1, -1),
+    )  # fmt: skip
+    return out[:, 0]
 
 
 def actuator_rate(run: ClosedLoop, moved: Array) -> Array:
