@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 from scipy.special import stdtrit
@@ -104,11 +104,13 @@ def _seaway_trials(
 def _hourly_energies(task: TuningTask, run: ClosedLoop, angles: Array, U: float) -> tuple[float, float]:
     """Return J in an hour by the drive and by the drag of the actuator's angles (n,) after the run-in, at U [m/s].
 
-    Rates are those from sample to sample of the controller, as everywhere.
+    Rates are those from step to step. Without a servo they are those from sample to sample: an actuator that follows
+    an order at once would take any work.
     """
-    every = 1 if run.loop.sampling is None else steps_a_sample(run.loop.sampling, run.dt)
-    step, rates = every * run.dt, actuator_rate(run, angles)[::every]
-    drive = math.nan if task.drive is None else task.drive.hourly_energy(rates, step)
+    sampling = run.loop.sampling
+    every = 1 if sampling is None or run.loop.servo else steps_a_sample(sampling, run.dt)
+    step = every * run.dt
+    drive = math.nan if task.drive is None else task.drive.hourly_energy(np.diff(angles[::every]) / step, step)
     return drive, math.nan if task.surface is None else task.surface.hourly_energy(float(np.mean(angles**2)), U)
 
 
@@ -364,13 +366,38 @@ def _simulate(
     clock, model = disturbance_clock(met, loop), plant_model(loop)
     actuator, disturbance = model.input_names
     run = ClosedLoop(model, loop, loop.gain_values, clock.dt, actuator, disturbance, loop.output)
+    output = model.states.index(loop.output)
 
-    def of_one(number: int) -> Array:
+    def of_one(number: int, each: ActuatorLimits) -> tuple[Array, Array]:
         series = disturbance_realisation(met, loop, clock, number)
         noise = None if loop.sampling is None else sample_noise(loop.sampling, clock.count, number)
-        return np.stack([_mean_squares(run, series, clock, each, noise) for each in (UNLIMITED, limits)])
+        states, moved = run.run(series, each, noise=noise)
+        return states[:, output], moved
 
-    free, held = np.stack(map_in_threads(of_one, [seed + k for k in range(SEEDS)]), axis=1)
+    return rms_in_disturbance(met, run, of_one, clock, limits, expected, seed)
+
+
+def rms_in_disturbance(
+    met: Seaway | SlowDisturbance,
+    run: ClosedLoop,
+    of_one: Callable[[int, ActuatorLimits], tuple[Array, Array]],
+    clock: DisturbanceClock,
+    limits: ActuatorLimits,
+    expected: Array,
+    seed: int,
+) -> DisturbanceSimulation:
+    """Return rms of output, actuator and its rate of a loop in `SEEDS` realisations, without and with limits.
+
+    of_one: output and actuator (n,) in the realisation of a number, within limits.
+    expected: rms by linear theory, (3,).
+    """
+
+    def mean_squares(number: int) -> Array:
+        return np.stack(
+            [_mean_squares(run, partial(of_one, number, each), clock.first) for each in (UNLIMITED, limits)]
+        )
+
+    free, held = np.stack(map_in_threads(mean_squares, [seed + k for k in range(SEEDS)]), axis=1)
     rms = np.sqrt(free.mean(axis=0))
     error = free.std(axis=0, ddof=1) / math.sqrt(SEEDS) / (2.0 * rms)
     columns = (expected, rms, np.sqrt(held.mean(axis=0)), error)
@@ -469,15 +496,11 @@ def actuator_rate(run: ClosedLoop, moved: Array) -> Array:
     return (moved[every:] - moved[:-every]) / (every * run.dt)
 
 
-def _mean_squares(
-    run: ClosedLoop, disturbance: Array, clock: DisturbanceClock, limits: ActuatorLimits, noise: Array | None
-) -> Array:
+def _mean_squares(run: ClosedLoop, simulated: Callable[[], tuple[Array, Array]], first: int) -> Array:
     """Return mean squares of output, actuator and its rate, (3,); infinite where the limits let the loop run away."""
-    first = clock.first
     try:
-        states, moved = run.run(disturbance, limits, noise=noise)
+        output, moved = simulated()
     except DivergedError:
         return np.full(len(SIGNALS), np.inf)
-    output, rate = states[first:, run.model.states.index(run.output)], actuator_rate(run, moved[first:])
-    squares = [float(np.mean(signal**2)) for signal in (output, moved[first:], rate)]
-    return np.array(squares)
+    signals = (output[first:], moved[first:], actuator_rate(run, moved[first:]))
+    return np.array([float(np.mean(signal**2)) for signal in signals])

@@ -8,16 +8,16 @@ from functools import cached_property, reduce
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, DivergedError, InputError, Provenance, Record, frozen, spelling_hint
+from seatrial.core.values import Array, InputError, Provenance, Record, frozen, spelling_hint
 from seatrial.numerics.kernels import feedback
-from seatrial.numerics.kernels.feedback import sampled_controller, steer
+from seatrial.numerics.kernels.feedback import sampled_controller
 from seatrial.numerics.kernels.integrate import evaluate
 from seatrial.numerics.kernels.linear import propagators, replay
 from seatrial.physics.loops import Block, TransferLoop
 from seatrial.physics.loops.discrete import difference_equation, holding_terms
 from seatrial.physics.loops.loop import Sampling, controllable_form, held_step, in_series, straight_step
 from seatrial.physics.loops.loop_states import StateSpace
-from seatrial.physics.simulate.replay import record_of, require_bounded
+from seatrial.physics.simulate.replay import commanded, record_of
 
 # The controller of a loop in steps: its own states, discretised exactly for an error that runs straight between them.
 
@@ -349,16 +349,9 @@ class ClosedLoop:
                 "more, without gaps"
             )
         memory = self.controller_memory(disturbance, limits, wanted, added, noise)
-        states, inputs = np.empty((count, len(self.start))), np.empty((count, len(self.inputs)))
-        diverged = steer(
-            self.model.compiled.rates, self.command, self.start.copy(), self.inputs.copy(),
-            self.model.parameters.values, memory, self.dt, states, inputs,
-        )  # fmt: skip
-        last = count if diverged < 0 else diverged + 1
-        time = frozen(self.dt * np.arange(last))
-        require_bounded(self.model, time, states[:last], f"loop '{self.loop.name}'")
-        if diverged >= 0:
-            raise DivergedError(f"loop '{self.loop.name}' before model '{self.model.name}' runs away at {time[-1]:g} s")
+        states, _ = commanded(
+            self.model, self.command, memory, self.dt, count, self.start, self.inputs, f"loop '{self.loop.name}'"
+        )
         return states, memory[self._angles(memory, count)]
 
     @property
@@ -446,42 +439,6 @@ class ClosedLoop:
             about = made.channel(self.output)
             made = made.with_channel(REFERENCE, replace(about, values=frozen(reference)))
         return replace(made, provenance=Provenance(f"loop '{self.loop.name}' before model '{self.model.name}'"))
-
-
-def closed_loop(
-    model: Model,
-    loop: TransferLoop,
-    gains: Array,
-    disturbance: Array,
-    dt: float,
-    *,
-    actuator: str,
-    disturbance_input: str,
-    output: str,
-    limits: ActuatorLimits = UNLIMITED,
-    reference: Array | None = None,
-    start: Array | None = None,
-    inputs: Array | None = None,
-    effectiveness: float = 1.0,
-) -> Record:
-    """The loop's controller with gains (g,) before a model, met by a disturbance (n,), following a reference (n,).
-
-    The arguments are those of `ClosedLoop`; see there for signs and trims. Slow terms are held while a limit bites and
-    they would drive further into it (conditional integration; Astrom & Hagglund 1995, PID Controllers, section 3.5).
-
-    Returns:
-        A simulated record: states, inputs, actuator and disturbance at their samples, and ``reference`` where given.
-
-    Raises:
-        InputError: unknown names, wrong lengths, values that are not finite.
-        DivergedError: it runs away.
-    """
-    nothing = np.empty(0)
-    prepared = ClosedLoop(
-        model, loop, np.asarray(gains, dtype=np.float64), dt, actuator, disturbance_input, output,
-        nothing if start is None else start, nothing if inputs is None else inputs, effectiveness,
-    )  # fmt: skip
-    return prepared.record(f"{loop.name} closed", disturbance, limits, reference)
 
 
 def hold_equivalent(series: Array) -> Array:
