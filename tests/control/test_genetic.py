@@ -24,7 +24,7 @@ from seatrial.physics.loops import Preamplifier
 from seatrial_studies.yu2014.published import performance
 from seatrial_studies.yu2014.searches import GeneticSearchSetting, search_over_seeds
 
-SMALL = GeneticTuning(seeds=3)
+SMALL = GeneticTuning(population=20, generations=10, seeds=3)
 TINY = Effort(refined=4, fill_rounds=2, neighbours=2000)
 
 

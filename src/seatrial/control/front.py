@@ -98,7 +98,7 @@ class RateCurve:
         for level in levels.tolist():
             if level not in self.known:
                 self.known[level] = self._gains_at(level)
-        return np.array([self.known[level] for level in levels.tolist()]).reshape(len(levels), -1)
+        return np.array([self.known[level] for level in levels.tolist()]).reshape(-1, self.samples.shape[1])
 
     def _gains_at(self, level: float) -> Array:
         # the share exp(-1/2) of a Rayleigh distribution lies beyond its rms, so that the variance allowed is the level
