@@ -39,7 +39,7 @@ MAX_SATURATION_LOSS = 0.03  # reduction lost to the actuator's limits, as a shar
 # simulations; chosen
 _HEATS, _SELECTION_SEED_OFFSET = (3, 8), 100_000
 # reductions that differ less count as equal; share of the permitted loss used in the selection; chosen
-_EQUAL_REDUCTION, _LOSS_MARGIN = 0.003, 0.85
+_EQUAL_REDUCTION, _LARGEST_LOSS = 0.003, 0.85 * MAX_SATURATION_LOSS
 _CONFIDENCE = 0.95  # level of the paired interval within which a benefit is none; chosen
 _SAFER_MS, _EQUAL_MS = (1.3, 1.45), 0.05  # caps of designs with more margin; Ms that count as equal; chosen
 _LEAST_SHARE = 1e-12  # of amplitudes beyond a limit; guards the logarithm
@@ -81,14 +81,14 @@ class _Candidate:
         return float(np.mean(self.reductions))
 
     @cached_property
-    def saturation_loss(self) -> float:
-        """Reduction lost to angle and rate limits."""
-        return float(np.mean(self.linear() - self.limited))
+    def losses(self) -> Array:
+        """Reduction lost to angle and rate limits, (seeds,)."""
+        return self.linear() - self.limited
 
     @property
     def is_loss_small(self) -> bool:
         """Whether little is lost to the actuator's limits."""
-        return self.saturation_loss < _LOSS_MARGIN * MAX_SATURATION_LOSS
+        return float(np.mean(self.losses)) < _LARGEST_LOSS
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +131,8 @@ class _SelectionSeas:
         few, others = self._heats
         left = _equals([_met(one, few) for one in candidates])
         most = _first_kept(left, _reduction_first)
-        whole = {one: _met(one, others) for one in left if _benefit(most, one) <= 0.0 and one.is_loss_small}
+        leaders = [one for one in left if _benefit(most, one) <= 0.0 and _lower_end(one.losses) < _LARGEST_LOSS]
+        whole = {one: _met(one, others) for one in leaders}
         for one in sorted(left, key=_preference):
             met = whole[one] = whole.get(one) or _met(one, others)
             if met in _equals([*whole.values()]) and met.is_loss_small:
@@ -183,7 +184,7 @@ def choose_by_simulation(
         f"Of {count} controllers, least motion at rates of the actuator, none surely reduces the motion more "
         f"within the limits, with and without stall: mean {100.0 * best.reduction:.1f} % on {_HEATS[-1]} "
         "realisations kept for the choice. Of equals it has the most margin. The law of stall is assumed.",
-        f"It loses {100.0 * best.saturation_loss:.1f} points of reduction to angle and rate limits there; a loss of "
+        f"It loses {100.0 * float(np.mean(best.losses)):.1f} points of reduction to angle and rate limits there; a loss of "
         f"{100.0 * MAX_SATURATION_LOSS:.0f} points or more is not recommended.",
     )
     return GainChoice(best.evaluator, best.gains, best.front_name, reasons, _designs(tried, best))
@@ -252,9 +253,13 @@ def _first_kept(candidates: list[_Candidate], key: Callable[[_Candidate], Any]) 
 
 def _benefit(one: _Candidate, other: _Candidate) -> float:
     """Return by how much `one` surely reduces more than `other`: lower end of the paired interval (Student 1908)."""
-    gap, n = one.reductions - other.reductions, len(one.reductions)
-    half = stdtrit(n - 1, 0.5 + 0.5 * _CONFIDENCE) * np.std(gap, ddof=1) / math.sqrt(n)
-    return float(np.mean(gap) - half)
+    return _lower_end(one.reductions - other.reductions)
+
+
+def _lower_end(values: Array) -> float:
+    """Return the lower end of the interval of the mean of values (n,)."""
+    n = len(values)
+    return float(np.mean(values) - stdtrit(n - 1, 0.5 + 0.5 * _CONFIDENCE) * np.std(values, ddof=1) / math.sqrt(n))
 
 
 def _designs(tried: list[_Candidate], chosen: _Candidate) -> tuple[NamedGains, ...]:
