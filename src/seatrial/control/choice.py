@@ -53,7 +53,7 @@ class _Candidate:
 
     Attributes:
         limited, stalled: reductions in each sea with the actuator's limits, without and with stall, (seeds,).
-        linear: gives those without limits, simulated when the loss to the limits is asked for.
+        linear: simulates those without limits, which only the loss to the limits needs.
         effort: energy if an objective, else variance of the rate.
         is_on_bound: whether a gain lies on a bound of the search that is not zero.
         is_delay_kept: whether the delay margin is long enough.
@@ -119,7 +119,7 @@ class _SelectionSeas:
 
     def tried(self, candidate: _Candidate) -> _Candidate:
         """Return the candidate in all seas."""
-        return reduce(_met, self._heats, candidate)
+        return reduce(_after_heat, self._heats, candidate)
 
     def raced(self, candidates: Sequence[_Candidate]) -> list[_Candidate]:
         """Return those among which the best one of all must be, in all seas.
@@ -129,18 +129,18 @@ class _SelectionSeas:
         nor come before one that is as good.
         """
         few, others = self._heats
-        left = _equals([_met(one, few) for one in candidates])
-        most = _first_kept(left, _reduction_first)
-        leaders = [one for one in left if _benefit(most, one) <= 0.0 and _lower_end(one.losses) < _LARGEST_LOSS]
-        whole = {one: _met(one, others) for one in leaders}
-        for one in sorted(left, key=_preference):
-            met = whole[one] = whole.get(one) or _met(one, others)
-            if met in _equals([*whole.values()]) and met.is_loss_small:
+        equals = _equals([_after_heat(candidate, few) for candidate in candidates])
+        most = _first_kept(equals, _reduction_first)
+        leaders = [c for c in equals if _benefit(most, c) <= 0.0 and _lower_end(c.losses) < _LARGEST_LOSS]
+        tried = {candidate: _after_heat(candidate, others) for candidate in leaders}
+        for candidate in sorted(equals, key=_preference):
+            winner = tried[candidate] = tried.get(candidate) or _after_heat(candidate, others)
+            if winner in _equals([*tried.values()]) and winner.is_loss_small:
                 break
-        return [*whole.values()]
+        return [*tried.values()]
 
 
-def _met(one: _Candidate, heat: tuple[TuningTask, int]) -> _Candidate:
+def _after_heat(one: _Candidate, heat: tuple[TuningTask, int]) -> _Candidate:
     """Return a candidate that has met the seas of one more heat."""
     task, seed = heat
     free, *limits = actuator_stages(task)
@@ -184,7 +184,7 @@ def choose_by_simulation(
         f"Of {count} controllers, least motion at rates of the actuator, none surely reduces the motion more "
         f"within the limits, with and without stall: mean {100.0 * best.reduction:.1f} % on {_HEATS[-1]} "
         "realisations kept for the choice. Of equals it has the most margin. The law of stall is assumed.",
-        f"It loses {100.0 * float(np.mean(best.losses)):.1f} points of reduction to angle and rate limits there; a loss of "
+        f"It loses {100.0 * np.mean(best.losses):.1f} points of reduction to angle and rate limits there; a loss of "
         f"{100.0 * MAX_SATURATION_LOSS:.0f} points or more is not recommended.",
     )
     return GainChoice(best.evaluator, best.gains, best.front_name, reasons, _designs(tried, best))

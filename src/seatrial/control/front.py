@@ -21,7 +21,7 @@ from seatrial.control.gain_evaluation import (
     spread_gains,
 )
 from seatrial.control.task import GeneticTuning, SearchedObjectives
-from seatrial.core.results.tuning import RECORD_SECONDS, RECORD_STEP, Controller, GainSearch, ParetoFront
+from seatrial.core.results.tuning import Controller, GainSearch, ParetoFront
 from seatrial.core.values import Array, Index, InputError
 from seatrial.numerics.optimise import (
     Box,
@@ -32,39 +32,7 @@ from seatrial.numerics.optimise import (
     hypervolume,
     non_dominated,
 )
-from seatrial.physics.loops import LoopSignal, Objective, TransferLoop, squared_deviation, state_space, variance
-from seatrial.physics.simulate.closed_loop import loop_record
-
-# What a controller costs when it is judged by a simulated record in place of a spectrum: a measurement, no verdict.
-
-_REPEATS = 3  # of which the fastest counts; chosen
-
-
-def record_cost(loop: TransferLoop, gains: Array, seed: int) -> tuple[float, float]:
-    """Measure the CPU time [s] of a record of 1000 s at 0.1 s, by a compiled scalar loop and by scipy.signal.lsim.
-
-    Of one loop with the gains (g,) in white noise: each one holds its input exactly.
-    """
-    from scipy.signal import lsim
-
-    states = state_space(loop)
-    disturbance = np.random.default_rng(seed).standard_normal(round(RECORD_SECONDS / RECORD_STEP) + 1)
-    system = (states.closed_loop_matrix(gains), states.b[:, None], states.c[None], np.zeros((1, 1)))
-    times = RECORD_STEP * np.arange(len(disturbance))
-    return (
-        _least_cpu_time(lambda: loop_record(states, gains, disturbance, RECORD_STEP)),
-        _least_cpu_time(lambda: lsim(system, disturbance, times, interp=False)),
-    )
-
-
-def _least_cpu_time(run: Callable[[], object]) -> float:
-    seconds = []
-    for _ in range(_REPEATS):
-        began = time.process_time()
-        run()
-        seconds.append(time.process_time() - began)
-    return min(seconds)
-
+from seatrial.physics.loops import LoopSignal, Objective, squared_deviation, variance
 
 # The gains that leave least of the motion at a rate of the actuator: optima, not points where a search met its front.
 
@@ -80,13 +48,13 @@ class RateCurve:
     Attributes:
         samples: gains to begin from, (n, g).
         levels: rates [rad/s] up to that of the least motion within the task's restrictions, from that of the least rate
-            where a demand is followed; `known`: gains (g,) by their rate, at first the ends, then all that were found.
+            where a demand is followed; `optima`: gains (g,) by their rate, first of the ends.
     """
 
     evaluator: GainEvaluator
     samples: Array
     levels: Array
-    known: dict[float, Array]
+    optima: dict[float, Array]
 
     @cached_property
     def _judged(self) -> GainEvaluation:
@@ -94,19 +62,19 @@ class RateCurve:
         return self.evaluator.evaluate(self.samples)
 
     def gains_at(self, levels: Array) -> Array:
-        """Return gains of least motion at each level, followed from those known at the nearest rates, (n, g)."""
+        """Return gains of least motion at each level, followed from those at the nearest rates, (n, g)."""
         for level in levels.tolist():
-            if level not in self.known:
-                self.known[level] = self._gains_at(level)
-        return np.array([self.known[level] for level in levels.tolist()]).reshape(-1, self.samples.shape[1])
+            if level not in self.optima:
+                self.optima[level] = self._gains_at(level)
+        return np.array([self.optima[level] for level in levels.tolist()]).reshape(-1, self.samples.shape[1])
 
     def _gains_at(self, level: float) -> Array:
         # the share exp(-1/2) of a Rayleigh distribution lies beyond its rms, so that the variance allowed is the level
         within = replace(self.evaluator.task.constraints, rate=level, rate_saturation=math.exp(-0.5))
-        slower, faster = ([rate for rate in self.known if sign * rate < sign * level] for sign in (1.0, -1.0))
+        slower, faster = ([rate for rate in self.optima if sign * rate < sign * level] for sign in (1.0, -1.0))
         near = [max(slower), min(faster)] if slower and faster else []
         return least_output_gains(
-            self.evaluator.within(within), self._samples_within(level), [self.known[rate] for rate in near]
+            self.evaluator.within(within), self._samples_within(level), [self.optima[rate] for rate in near]
         )
 
     def _samples_within(self, level: float) -> Array:
@@ -387,7 +355,7 @@ def published_search(
     runs = genetic_runs(evaluator, settings, seed)
     answers = all_gains(evaluator, np.stack([run.gains for run in runs]))
     front = _searched_front(evaluator, runs[0])
-    result = _search_result(evaluator, settings, runs, answers, package_front, front, seed)
+    result = _search_result(evaluator, settings, runs, answers, package_front, front)
     choice = GainChoice(evaluator, answers[0], FRONT_NAME, _reasons(result))
     return PublishedSearch(choice, result, front)
 
@@ -399,11 +367,9 @@ def _search_result(
     answers: Array,
     package_front: ParetoFront,
     front: ParetoFront,
-    seed: int,
 ) -> GainSearch:
     judged, (low, high) = evaluator.evaluate(answers), free_gain_bounds(evaluator)[1]
     beaten = (package_front.objectives[:, None] < judged.objectives).all(axis=2).any(axis=0)
-    compiled, lsim = record_cost(evaluator.loop, answers[0], seed)
     return GainSearch(
         source=SOURCE,
         settings={field.name: _setting_text(getattr(settings, field.name)) for field in fields(settings)},
@@ -421,8 +387,6 @@ def _search_result(
         is_feasible=tuple(judged.is_feasible.tolist()),
         dominated=int(beaten.sum()),
         hypervolume=_covered_share(front.objectives, package_front.objectives),
-        compiled_record_s=compiled,
-        lsim_record_s=lsim,
     )
 
 

@@ -169,7 +169,7 @@ class GainEvaluator:
         ])  # fmt: skip
         excess = np.zeros((3, len(gains)))
         frailest = self.performances[int(np.argmax([one.Ms[0] for one in evaluated]))]
-        excess[0] = frailest.Ms_gradient(gains) / self.task.constraints.Ms
+        excess[0] = frailest.sensitivity_peaks(gains)[1][0] / self.task.constraints.Ms
         for i, place in enumerate(at[0] for at in self._variance_indices[-3:-1]):
             worst = int(np.argmax([v[0, place] for v in made]))
             excess[1 + i] = rows[worst][place] / self.allowed_variances[i]

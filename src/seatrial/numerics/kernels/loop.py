@@ -93,9 +93,8 @@ def sensitivity_peaks(k, re, im, peaks, slopes):
     """
     count = re.shape[1]
     x, y, size = np.empty(count), np.empty(count), np.empty(count)
-    places, found = np.empty(peaks.size, np.int64), 1
+    places, peak_count, smallest = np.empty(peaks.size, np.int64), 1, np.inf
     _return_difference(k, re, im, x, y)
-    smallest = np.inf
     for f in range(count):
         size[f] = x[f] * x[f] + y[f] * y[f]
         if size[f] < smallest:
@@ -103,17 +102,17 @@ def sensitivity_peaks(k, re, im, peaks, slopes):
     for f in range(1, count - 1):
         if f == places[0] or size[f] > size[f - 1] or size[f] > size[f + 1]:
             continue
-        at = found
-        while at > 1 and size[f] < size[places[at - 1]]:
-            at -= 1
-        if at < peaks.size:
-            found = min(found + 1, peaks.size)
-            for later in range(found - 1, at, -1):
+        rank = peak_count
+        while rank > 1 and size[f] < size[places[rank - 1]]:
+            rank -= 1
+        if rank < peaks.size:
+            peak_count = min(peak_count + 1, peaks.size)
+            for later in range(peak_count - 1, rank, -1):
                 places[later] = places[later - 1]
-            places[at] = f
+            places[rank] = f
     peaks[:] = 0.0
     slopes[:] = 0.0
-    for row in range(found):
+    for row in range(peak_count):
         place = places[row]
         u = _nearest_to_zero(x, y, place)
         zx, zy = _on_parabola(x, place, u), _on_parabola(y, place, u)

@@ -303,10 +303,6 @@ class Performance:
         variance_gradients(np.ascontiguousarray(gains, dtype=np.float64), re, im, *self._node_weights, out)
         return out
 
-    def Ms_gradient(self, gains: Array) -> Array:
-        """d Ms / d gains (g,) of what `evaluate` gives, by the same parabola: its place has no first-order effect."""
-        return self.sensitivity_peaks(gains)[1][0]
-
     def sensitivity_peaks(self, gains: Array) -> tuple[Array, Array]:
         """Return the largest peaks of |S| over the band, largest first, and their slopes d |S| / d gains, by parabolas.
 
