@@ -26,7 +26,7 @@ G = 9.80665  # m/s^2, standard gravity
 DEGREE = math.pi / 180.0
 # points, %, %, Ms: by how much page and simulator may differ
 OVERSHOOT, SETTLING, RMS, PEAK = 2.0, 10.0, 5.0, 0.05
-QUICK = Effort(population=80, generations=20, refined=12, fill_rounds=2, neighbours=4000)
+QUICK = Effort(refined=12, fill_rounds=2, neighbours=4000)
 
 
 def tuning_of(

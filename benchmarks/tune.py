@@ -50,7 +50,7 @@ def _front(reading: Preamplifier, name: str, objectives: tuple[Objective, ...]) 
     one = gain_evaluator(
         TuningTask("", "fins", "", fin_loop(reading), (met,), objectives, ControllerConstraints(Ms=2.0), U)
     )
-    pareto_front(one, "", 0, _ignore_progress, Effort(20, 2, 1, 1, 100))
+    pareto_front(one, "", 0, _ignore_progress, Effort(1, 1, 100))
     began = time.perf_counter()
     made = pareto_front(one, "", 0, _ignore_progress, Effort())
     seconds = time.perf_counter() - began

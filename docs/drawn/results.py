@@ -191,9 +191,7 @@ def log_parts() -> Figure:
 def front() -> Figure:
     """The front of the fin stabiliser of the example, by a search that is short enough for a picture."""
     task = st.load_loop(REPOSITORY / "examples" / "fin_stabiliser.toml")
-    tuning = tune(
-        task, seed=0, effort=Effort(population=80, generations=20, refined=12, fill_rounds=2, neighbours=4000)
-    )
+    tuning = tune(task, seed=0, effort=Effort(refined=12, fill_rounds=2, neighbours=4000))
     columns = [list(tuning.objectives).index(name) for name in list(tuning.objectives)[:2]]
     figure, axes = plt.subplots(figsize=(5.4, 3.0))
     x, y = np.sqrt(tuning.front.objectives[:, columns]).T

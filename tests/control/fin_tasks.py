@@ -22,7 +22,7 @@ VARIANCES = (
 TARGET = squared_deviation("fin", LoopSignal.ACTUATOR, math.radians(1.0) ** 2 * 150.31, one_sided=False)
 PAPER_OBJECTIVES = (VARIANCES[0], TARGET, VARIANCES[2])
 PUBLISHED = np.array(list(PUBLISHED_GAINS.values()))
-QUICK = Effort(population=60, generations=20, refined=12, fill_rounds=4, neighbours=8000)
+QUICK = Effort(refined=12, fill_rounds=4, neighbours=8000)
 LIMITS = ControllerConstraints(2.0, 0.2, 0.2, math.radians(22.0), math.radians(25.0), math.radians(18.0))
 
 

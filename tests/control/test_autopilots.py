@@ -27,7 +27,7 @@ OBJECTIVES = (
     variance("output", "rad^2", LoopSignal.OUTPUT),
     variance("actuator rate", "rad^2/s^2", LoopSignal.ACTUATOR, 1),
 )
-QUICK = Effort(population=80, generations=20, refined=12, fill_rounds=2, neighbours=4000)
+QUICK = Effort(refined=12, fill_rounds=2, neighbours=4000)
 
 
 def autopilot_of(ship: TrimmedShip, L: float, gear: float, limit: float, rate: float) -> TuningTask:

@@ -4,18 +4,25 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.control.fin_tasks import fin_task
+from tests.control.fin_tasks import PUBLISHED, fin_task
 
-from seatrial.control.choice import HARD_WORKING, ROBUST, _best_candidate, _Candidate, _designs
+from seatrial.control.choice import HARD_WORKING, ROBUST, _best_candidate, _Candidate, _designs, _SelectionSeas
 from seatrial.control.gain_evaluation import gain_evaluator, gains_on_bound
+from seatrial.control.task import SimulationSettings
 
 SEAS = np.array([0.70, 0.72, 0.69, 0.71])
 
 
-def candidate(gain: float, Ms: float, *, is_on_bound: bool = False, is_delay_kept: bool = True) -> _Candidate:
+def candidate(
+    gain: float, Ms: float, *, is_on_bound: bool = False, is_delay_kept: bool = True, loss: float = 0.0
+) -> _Candidate:
     judge = gain_evaluator(fin_task())
     scatter = 1e-3 * np.arange(len(SEAS))
-    return _Candidate(judge, np.full(3, Ms), "front", SEAS + gain + scatter, 0.0, 1.0, Ms, is_on_bound, is_delay_kept)
+    reductions = SEAS + gain + scatter
+    return _Candidate(
+        judge, np.full(3, Ms), "front", reductions, reductions, lambda: reductions + loss, 1.0, Ms, is_on_bound,
+        is_delay_kept,
+    )  # fmt: skip
 
 
 def test_margin_is_preferred_where_the_benefit_is_not_sure() -> None:
@@ -32,6 +39,22 @@ def test_gains_within_the_search_and_enough_delay_margin_come_first() -> None:
     inside, on_bound = candidate(0.0, 1.5), candidate(0.001, 1.2, is_on_bound=True)
     late = candidate(0.1, 1.2, is_delay_kept=False)
     assert _best_candidate([late, on_bound, inside]) is inside
+
+
+def test_who_loses_much_to_the_limits_is_neither_chosen_nor_the_measure_of_others() -> None:
+    lossy, kept = candidate(0.02, 1.2, loss=0.03), candidate(0.0, 1.6)
+    assert _best_candidate([lossy, kept]) is kept
+    assert _best_candidate([lossy]) is lossy
+
+
+def test_a_race_ends_at_the_candidate_that_all_seas_would_choose() -> None:
+    task = replace(fin_task(), simulation=SimulationSettings(seeds=4, duration=200.0, dt=0.05))
+    judge, seas = gain_evaluator(task), _SelectionSeas(task, 1000)
+    made = [seas.candidate(judge, "front", scale * PUBLISHED) for scale in (0.2, 0.5, 0.9, 1.0, 1.1)]
+    raced, whole = seas.raced(made), [seas.tried(one) for one in made]
+    best, wanted = _best_candidate(raced), _best_candidate(whole)
+    assert np.array_equal(best.gains, wanted.gains) and np.array_equal(best.reductions, wanted.reductions)
+    assert len(best.limited) == 8 and len(raced) < len(made)
 
 
 def test_a_robust_and_a_hard_working_design_stand_beside_the_choice() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from tests.control.fin_tasks import PAPER_OBJECTIVES, PUBLISHED, VARIANCES, fin_task
 
-from seatrial.control.choice import _rate_curve
+from seatrial.control.front import rate_curve
 from seatrial.control.gain_evaluation import GainEvaluator, gain_evaluator, polished_gains
 from seatrial.control.task import Effectiveness
 from seatrial.core.results.tuning import ControllerConstraints
@@ -108,7 +108,7 @@ def test_gains_along_the_rate_stay_where_sums_end_in_other_bits(monkeypatch):
 
         with monkeypatch.context() as patch:
             patch.setattr(Performance, "evaluate", rounded_elsewhere)
-            curve = _rate_curve(gain_evaluator(fin_task()), 0)
+            curve = rate_curve(gain_evaluator(fin_task()), 0)
             return curve.levels[::5], curve.gains_at(curve.levels[::5])
 
     (levels, gains), (other_levels, others) = optima(1), optima(2)

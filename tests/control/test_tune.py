@@ -27,7 +27,7 @@ from seatrial.physics.models.roll import roll
 from seatrial.reporting.tuning import html
 from seatrial.reporting.tuning_text import demand_sentence
 
-TINY = Effort(population=40, generations=10, refined=4, fill_rounds=2, neighbours=2000)
+TINY = Effort(refined=4, fill_rounds=2, neighbours=2000)
 SHORT = SimulationSettings(seeds=2, duration=200.0)
 PUBLISHED_BY_NAME = {"as published": dict(zip(("KP", "KI", "KD"), PUBLISHED.tolist(), strict=True))}
 

@@ -6,7 +6,6 @@ from seatrial.control.gain_evaluation import GainEvaluation as GainEvaluation, G
 from seatrial.control.gain_evaluation import gain_evaluator as gain_evaluator
 from seatrial.control.front import GeneticRun as GeneticRun, genetic_run as genetic_run, genetic_runs as genetic_runs
 from seatrial.control.task import GeneticTuning as GeneticTuning, SearchedObjectives as SearchedObjectives
-from seatrial.control.front import record_cost as record_cost
 from seatrial.control.simulation import simulate_in_seaway as simulate_in_seaway
 from seatrial.control.task import Demand as Demand, ScheduleGrid as ScheduleGrid, Seaway as Seaway
 from seatrial.control.task import SimulationSettings as SimulationSettings, SlowDisturbance as SlowDisturbance

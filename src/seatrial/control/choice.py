@@ -1,15 +1,18 @@
 """One controller out of the fronts, with reasons: by simulation where there is one, else the compromise."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property, reduce
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from scipy.special import stdtrit
 
 from seatrial.control.controller import shortfall
+from seatrial.control.front import RATES, rate_curve
 from seatrial.control.gain_evaluation import (
-    ACTUATOR_RATE,
     ON_BOUND,
     GainChoice,
     GainEvaluation,
@@ -21,21 +24,22 @@ from seatrial.control.gain_evaluation import (
     motion_and_rate_variances,
     spread_gains,
 )
-from seatrial.control.simulation import seaway_reductions
+from seatrial.control.simulation import actuator_stages, seaway_reductions
 from seatrial.control.task import Demand, TuningTask
 from seatrial.core.results.tuning import ParetoFront
 from seatrial.core.values import Array
 from seatrial.physics.loops import delay_margin
 from seatrial.physics.loops.objective import ENERGY
+from seatrial.physics.simulate.closed_loop import ActuatorLimits
 
 # The choice of a stabiliser: optima at rates of the actuator and with more margin, all through the same seas.
 
-CANDIDATE_COUNT = 16  # rates of the actuator at which gains are tried; chosen
 MAX_SATURATION_LOSS = 0.03  # reduction lost to the actuator's limits, as a share of one; chosen
-# seas of the selection, and their distance from the seeds of the final simulations; chosen
-_SELECTION_SEEDS, _SELECTION_SEED_OFFSET = 8, 100_000
+# seas after which candidates are left out, all in the end; and how far their seeds lie from those of the final
+# simulations; chosen
+_HEATS, _SELECTION_SEED_OFFSET = (3, 8), 100_000
 # reductions that differ less count as equal; share of the permitted loss used in the selection; chosen
-_EQUAL_REDUCTION, _LOSS_MARGIN = 0.003, 0.85
+_EQUAL_REDUCTION, _LARGEST_LOSS = 0.003, 0.85 * MAX_SATURATION_LOSS
 _CONFIDENCE = 0.95  # level of the paired interval within which a benefit is none; chosen
 _SAFER_MS, _EQUAL_MS = (1.3, 1.45), 0.05  # caps of designs with more margin; Ms that count as equal; chosen
 _LEAST_SHARE = 1e-12  # of amplitudes beyond a limit; guards the logarithm
@@ -45,11 +49,12 @@ ROBUST, HARD_WORKING = "robust", "hard-working"
 
 @dataclass(frozen=True, eq=False)
 class _Candidate:
-    """A candidate simulated.
+    """A candidate simulated in some seas.
 
     Attributes:
-        reductions: in each sea, with the actuator's limits, mean of with and without stall, (seeds,).
-        saturation_loss: reduction lost to the limits; effort: energy if an objective, else variance of the rate.
+        limited, stalled: reductions in each sea with the actuator's limits, without and with stall, (seeds,).
+        linear: simulates those without limits, which only the loss to the limits needs.
+        effort: energy if an objective, else variance of the rate.
         is_on_bound: whether a gain lies on a bound of the search that is not zero.
         is_delay_kept: whether the delay margin is long enough.
     """
@@ -57,17 +62,97 @@ class _Candidate:
     evaluator: GainEvaluator
     gains: Array
     front_name: str
-    reductions: Array
-    saturation_loss: float
+    limited: Array
+    stalled: Array
+    linear: Callable[[], Array]
     effort: float
     Ms: float
     is_on_bound: bool
     is_delay_kept: bool
 
+    @cached_property
+    def reductions(self) -> Array:
+        """Mean of with and without stall, (seeds,)."""
+        return 0.5 * (self.limited + self.stalled)
+
     @property
     def reduction(self) -> float:
         """Mean over the seas."""
         return float(np.mean(self.reductions))
+
+    @cached_property
+    def losses(self) -> Array:
+        """Reduction lost to angle and rate limits, (seeds,)."""
+        return self.linear() - self.limited
+
+    @property
+    def is_loss_small(self) -> bool:
+        """Whether little is lost to the actuator's limits."""
+        return float(np.mean(self.losses)) < _LARGEST_LOSS
+
+
+@dataclass(frozen=True, eq=False)
+class _SelectionSeas:
+    """The seas in which the candidates of a task are compared: the same ones for all; seed: of the first."""
+
+    task: TuningTask
+    seed: int
+
+    def candidate(self, judge: GainEvaluator, front_name: str, gains: Array) -> _Candidate:
+        """Return gains (g,) as a candidate that has met no sea yet."""
+        judged, loop, none = judge.evaluate(gains[None]), judge.loop, np.empty(0)
+        speeds = dict.fromkeys(met.U for met in self.task.disturbances)
+        delays = [delay_margin(self.task.loop_at(U, loop).with_gains(gains)) for U in speeds]
+        return _Candidate(
+            judge, gains, front_name, none, none, lambda: none, _effort(judge, judged), float(judged.Ms[0]),
+            bool(gains_on_bound(loop, gains)), min(delays) >= self.task.constraints.delay,
+        )  # fmt: skip
+
+    @cached_property
+    def _heats(self) -> list[tuple[TuningTask, int]]:
+        """The task with the seas of each heat, and the seed of the first of them."""
+        assert self.task.simulation is not None
+        return [
+            (replace(self.task, simulation=replace(self.task.simulation, seeds=last - first)), self.seed + first)
+            for first, last in pairwise((0, *_HEATS))
+        ]
+
+    def tried(self, candidate: _Candidate) -> _Candidate:
+        """Return the candidate in all seas."""
+        return reduce(_after_heat, self._heats, candidate)
+
+    def raced(self, candidates: Sequence[_Candidate]) -> list[_Candidate]:
+        """Return those among which the best one of all must be, in all seas.
+
+        After the first heat the others need not be simulated: they surely reduce less than the best (Maron & Moore
+        1994, Hoeffding races, Adv. Neural Inf. Process. Syst. 6; here by paired differences), or neither reduce more
+        nor come before one that is as good.
+        """
+        few, others = self._heats
+        equals = _equals([_after_heat(candidate, few) for candidate in candidates])
+        most = _first_kept(equals, _reduction_first)
+        leaders = [c for c in equals if _benefit(most, c) <= 0.0 and _lower_end(c.losses) < _LARGEST_LOSS]
+        tried = {candidate: _after_heat(candidate, others) for candidate in leaders}
+        for candidate in sorted(equals, key=_preference):
+            winner = tried[candidate] = tried.get(candidate) or _after_heat(candidate, others)
+            if winner in _equals([*tried.values()]) and winner.is_loss_small:
+                break
+        return [*tried.values()]
+
+
+def _after_heat(one: _Candidate, heat: tuple[TuningTask, int]) -> _Candidate:
+    """Return a candidate that has met the seas of one more heat."""
+    task, seed = heat
+    free, *limits = actuator_stages(task)
+
+    def reductions(stages: Sequence[ActuatorLimits]) -> Array:
+        return seaway_reductions(task, one.evaluator.loop, one.gains, seed, stages).T
+
+    limited, stalled = reductions(limits)
+    return replace(
+        one, limited=np.concatenate([one.limited, limited]), stalled=np.concatenate([one.stalled, stalled]),
+        linear=lambda: np.concatenate([one.linear(), *reductions([free])]),
+    )  # fmt: skip
 
 
 def choose_by_simulation(
@@ -77,39 +162,29 @@ def choose_by_simulation(
     report_progress: Callable[[str], None],
 ) -> GainChoice:
     """The candidate that reduces the motion most in simulation, with the most margin where others do as well."""
-    assert task.simulation is not None
-    few = replace(task, simulation=replace(task.simulation, seeds=_SELECTION_SEEDS))
-
-    def simulated(judge: GainEvaluator, front: ParetoFront, gains: Array) -> _Candidate:
-        linear, limited, stalled = seaway_reductions(few, judge.loop, gains, seed + _SELECTION_SEED_OFFSET).T
-        judged, loop = judge.evaluate(gains[None]), judge.loop
-        speeds = dict.fromkeys(met.U for met in task.disturbances)
-        delays = [delay_margin(task.loop_at(U, loop).with_gains(gains)) for U in speeds]
-        return _Candidate(
-            judge, gains, front.name, 0.5 * (limited + stalled), float(np.mean(linear - limited)),
-            _effort(judge, judged), float(judged.Ms[0]), bool(gains_on_bound(loop, gains)),
-            min(delays) >= task.constraints.delay,
-        )  # fmt: skip
-
-    tried: list[_Candidate] = []
+    seas, tried, count = _SelectionSeas(task, seed + _SELECTION_SEED_OFFSET), list[_Candidate](), 0
     for judge, front in fronts:
-        curve = _rate_curve(judge, seed)
+        curve = rate_curve(judge, seed)
         levels = curve.levels
         for around in ("along the front", "about the best"):
-            made = [simulated(judge, front, gains) for gains in curve.gains_at(levels)]
+            optima = curve.gains_at(levels)
+            made = seas.raced([seas.candidate(judge, front.name, gains) for gains in optima])
             tried += made
-            report_progress(f"choice of gains: {front.name}, {len(made)} candidates {around} simulated")
-            levels = _levels_about(levels, made.index(_best_candidate(made)))
+            count += len(optima)
+            report_progress(f"choice of gains: {front.name}, {len(optima)} candidates {around} simulated")
+            best = _best_candidate(made).gains
+            levels = _levels_about(levels, int(np.flatnonzero((optima == best).all(axis=1))[0]))
         best = _best_candidate(tried)
         safer = [_gains_with_margin(judge, tried, best, Ms, seed) for Ms in _SAFER_MS if Ms < task.constraints.Ms]
-        tried += [simulated(judge, front, gains) for gains in safer]
+        tried += [seas.tried(seas.candidate(judge, front.name, gains)) for gains in safer]
+        count += len(safer)
         report_progress(f"choice of gains: {front.name}, {len(safer)} with more margin simulated")
     best = _best_candidate(tried)
     reasons = (
-        f"Of {len(tried)} controllers, least motion at rates of the actuator, none surely reduces the motion more "
-        f"within the limits, with and without stall: mean {100.0 * best.reduction:.1f} % on {_SELECTION_SEEDS} "
+        f"Of {count} controllers, least motion at rates of the actuator, none surely reduces the motion more "
+        f"within the limits, with and without stall: mean {100.0 * best.reduction:.1f} % on {_HEATS[-1]} "
         "realisations kept for the choice. Of equals it has the most margin. The law of stall is assumed.",
-        f"It loses {100.0 * best.saturation_loss:.1f} points of reduction to angle and rate limits there; a loss of "
+        f"It loses {100.0 * np.mean(best.losses):.1f} points of reduction to angle and rate limits there; a loss of "
         f"{100.0 * MAX_SATURATION_LOSS:.0f} points or more is not recommended.",
     )
     return GainChoice(best.evaluator, best.gains, best.front_name, reasons, _designs(tried, best))
@@ -137,7 +212,7 @@ def _gains_with_margin(judge: GainEvaluator, tried: list[_Candidate], like: _Can
         )
     )
     within = replace(limits, Ms=Ms, saturation=amplitudes, rate_saturation=rates)
-    evaluator = GainEvaluator(replace(task, constraints=within), judge.loop, (task.motion,))
+    evaluator = replace(judge.within(within), objectives=(task.motion,))
     named = [dict(zip(one.evaluator.loop.gains.names, one.gains.tolist(), strict=True)) for one in tried]
     known = np.array([[gains.get(name, 0.0) for name in judge.loop.gains.names] for gains in named])
     return least_output_gains(evaluator, np.concatenate([spread_gains(evaluator, seed), known]))
@@ -145,32 +220,54 @@ def _gains_with_margin(judge: GainEvaluator, tried: list[_Candidate], like: _Can
 
 def _best_candidate(candidates: list[_Candidate]) -> _Candidate:
     """Of those that surely reduce no less than the best one: off the bounds of the search, then with the least Ms."""
-    some = _keeping(candidates)
-    most = max(some, key=lambda one: one.reduction)
-    equal = [one for one in some if _benefit(most, one) <= _EQUAL_REDUCTION]
-    return min(equal, key=lambda one: (one.is_on_bound, round(one.Ms / _EQUAL_MS), one.effort))
+    return _first_kept(_equals(candidates), _preference)
 
 
-def _keeping(candidates: list[_Candidate]) -> list[_Candidate]:
-    """Return those with the delay margin that lose little to the actuator's limits; all where there is none."""
-    in_time = [one for one in candidates if one.is_delay_kept] or candidates
-    return [one for one in in_time if one.saturation_loss < _LOSS_MARGIN * MAX_SATURATION_LOSS] or in_time
+def _preference(one: _Candidate) -> tuple[bool, int, float]:
+    """Return the order of those that reduce the motion as much."""
+    return one.is_on_bound, round(one.Ms / _EQUAL_MS), one.effort
+
+
+def _reduction_first(one: _Candidate) -> float:
+    """Return the order by reduction."""
+    return -one.reduction
+
+
+def _equals(candidates: list[_Candidate]) -> list[_Candidate]:
+    """Return those that surely reduce no less than the best one that loses little to the actuator's limits."""
+    some = _in_time(candidates)
+    most = _first_kept(some, _reduction_first)
+    return [one for one in some if _benefit(most, one) <= _EQUAL_REDUCTION]
+
+
+def _in_time(candidates: list[_Candidate]) -> list[_Candidate]:
+    """Return those with the delay margin; all where there is none."""
+    return [one for one in candidates if one.is_delay_kept] or candidates
+
+
+def _first_kept(candidates: list[_Candidate], key: Callable[[_Candidate], Any]) -> _Candidate:
+    """Return the first by a key that loses little to the actuator's limits; the first where none does."""
+    in_order = sorted(candidates, key=key)
+    return next((one for one in in_order if one.is_loss_small), in_order[0])
 
 
 def _benefit(one: _Candidate, other: _Candidate) -> float:
     """Return by how much `one` surely reduces more than `other`: lower end of the paired interval (Student 1908)."""
-    gap, n = one.reductions - other.reductions, len(one.reductions)
-    half = stdtrit(n - 1, 0.5 + 0.5 * _CONFIDENCE) * np.std(gap, ddof=1) / math.sqrt(n)
-    return float(np.mean(gap) - half)
+    return _lower_end(one.reductions - other.reductions)
+
+
+def _lower_end(values: Array) -> float:
+    """Return the lower end of the interval of the mean of values (n,)."""
+    n = len(values)
+    return float(np.mean(values) - stdtrit(n - 1, 0.5 + 0.5 * _CONFIDENCE) * np.std(values, ddof=1) / math.sqrt(n))
 
 
 def _designs(tried: list[_Candidate], chosen: _Candidate) -> tuple[NamedGains, ...]:
     """Return the best one with Ms of 1.3 at most, and the one that reduces most whatever its margin, if others."""
-    some = _keeping(tried)
-    robust = max(
-        (one for one in some if one.Ms <= _SAFER_MS[0] + _EQUAL_MS), key=lambda one: one.reduction, default=chosen
-    )
-    hard = max(some, key=lambda one: one.reduction)
+    some = _in_time(tried)
+    with_margin = [one for one in some if one.Ms <= _SAFER_MS[0] + _EQUAL_MS]
+    hard = _first_kept(some, _reduction_first)
+    robust = _first_kept(with_margin, _reduction_first) if with_margin else chosen
     named = {ROBUST: robust, HARD_WORKING: hard}
     return tuple(NamedGains(name, one.evaluator, one.gains) for name, one in named.items() if not _is_same(one, chosen))
 
@@ -179,59 +276,10 @@ def _is_same(one: _Candidate, other: _Candidate) -> bool:
     return one.front_name == other.front_name and bool(np.allclose(one.gains, other.gains, rtol=ON_BOUND))
 
 
-# The gains that leave least of the motion at a rate of the actuator: optima, not points where a search met its front.
-
-
-@dataclass(frozen=True, eq=False)
-class _RateCurve:
-    """Optima of a loop over the rms rate of the actuator in the worst disturbance.
-
-    Attributes:
-        samples: gains to begin from, (n, g).
-        levels: rates [rad/s] up to that of the least motion within the task's restrictions, from that of the least rate
-            where a demand is followed; `ends`: gains (g,) of these by their rate.
-    """
-
-    evaluator: GainEvaluator
-    samples: Array
-    levels: Array
-    ends: Mapping[float, Array]
-
-    def gains_at(self, levels: Array) -> Array:
-        """Return gains of least motion at each level, from the least on, (n, g): what keeps one keeps the next."""
-        optima: list[Array] = []
-        for level in levels:
-            optima.append(self._gains_at(float(level), optima))
-        return np.array(optima)
-
-    def _gains_at(self, level: float, slower: list[Array]) -> Array:
-        if level in self.ends:
-            return self.ends[level]
-        # the share exp(-1/2) of a Rayleigh distribution lies beyond its rms, so that the variance allowed is the level
-        task = self.evaluator.task
-        within = replace(task.constraints, rate=level, rate_saturation=math.exp(-0.5))
-        evaluator = replace(self.evaluator, task=replace(task, constraints=within))
-        return least_output_gains(evaluator, self.samples, slower[-1:])
-
-
-def _rate_curve(judge: GainEvaluator, seed: int) -> _RateCurve:
-    """Return the optima of a loop over the rate: in decades of it where a demand is followed, as that needs some."""
-    task = judge.task
-    evaluator, samples = GainEvaluator(task, judge.loop, (task.motion,)), spread_gains(judge, seed)
-    ends = [least_output_gains(evaluator, samples)]
-    if task.demand is not None:
-        ends.insert(0, least_output_gains(replace(evaluator, objectives=(ACTUATOR_RATE,)), samples))
-    rates = np.sqrt(judge.evaluate(np.array(ends)).variances[:, :, 2].max(axis=1))
-    shares = np.arange(1, CANDIDATE_COUNT + 1) / CANDIDATE_COUNT
-    levels = rates[-1] * shares if task.demand is None else np.geomspace(rates[0], rates[-1], CANDIDATE_COUNT)
-    at_ends = dict(zip(rates.tolist(), ends, strict=True))
-    return _RateCurve(evaluator, np.vstack([samples, ends]), levels, at_ends)
-
-
 def _levels_about(levels: Array, place: int) -> Array:
     """Return rates between the neighbours of one of `levels`, without those themselves and without it."""
     low, high = levels[max(place - 1, 0)], levels[min(place + 1, len(levels) - 1)]
-    return np.setdiff1d(np.linspace(low, high, CANDIDATE_COUNT + 2)[1:-1], levels)
+    return np.setdiff1d(np.linspace(low, high, RATES + 2)[1:-1], levels)
 
 
 # One controller out of the fronts, with reasons: by simulation where there is one, else the compromise.
@@ -263,7 +311,7 @@ def choose(
     if task.simulation is not None:
         return choose_by_simulation(task, filled, seed, report_progress)
     judge, front = filled[0]
-    curve = _rate_curve(judge, seed)
+    curve = rate_curve(judge, seed)
     tried = _candidates(judge, front.name, curve.gains_at(curve.levels))
     about = _levels_about(curve.levels, tried.index(_compromise(task, tried)))
     best = _compromise(task, [*tried, *_candidates(judge, front.name, curve.gains_at(about))])
@@ -304,7 +352,7 @@ def _choose_by_demand(
     report_progress: Callable[[str], None],
 ) -> GainChoice:
     """Return the compromise among those of all fronts that follow the demand in time, without overshooting."""
-    curves = [(judge, front.name, _rate_curve(judge, seed)) for judge, front in fronts]
+    curves = [(judge, front.name, rate_curve(judge, seed)) for judge, front in fronts]
     tried = [
         candidate
         for judge, name, curve in curves

@@ -20,7 +20,7 @@ from seatrial.estimation.predict.draws import square_root
 KNOWN = 0.15
 """Relative standard error of every coefficient from which on gains are proposed: that at which a change of the ship is
 looked for, too; chosen."""
-_EFFORT = Effort(population=60, generations=20, refined=8, fill_rounds=2, neighbours=2000)
+_EFFORT = Effort(refined=8, fill_rounds=2, neighbours=2000)
 """Of the front of a proposal: half a second or so of processor time, and gains within the 3 % that count; chosen."""
 
 

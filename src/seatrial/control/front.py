@@ -5,12 +5,23 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from enum import Enum
+from functools import cached_property, lru_cache
 
 import numpy as np
 
-from seatrial.control.gain_evaluation import GainChoice, GainEvaluator, all_gains, free_gain_bounds, refine_gains
+from seatrial.control.gain_evaluation import (
+    ACTUATOR_RATE,
+    GainChoice,
+    GainEvaluation,
+    GainEvaluator,
+    all_gains,
+    free_gain_bounds,
+    least_output_gains,
+    refine_gains,
+    spread_gains,
+)
 from seatrial.control.task import GeneticTuning, SearchedObjectives
-from seatrial.core.results.tuning import RECORD_SECONDS, RECORD_STEP, Controller, GainSearch, ParetoFront
+from seatrial.core.results.tuning import Controller, GainSearch, ParetoFront
 from seatrial.core.values import Array, Index, InputError
 from seatrial.numerics.optimise import (
     Box,
@@ -21,65 +32,103 @@ from seatrial.numerics.optimise import (
     hypervolume,
     non_dominated,
 )
-from seatrial.physics.loops import LoopSignal, Objective, TransferLoop, squared_deviation, state_space, variance
-from seatrial.physics.simulate.closed_loop import loop_record
+from seatrial.physics.loops import LoopSignal, Objective, squared_deviation, variance
 
-# What a controller costs when it is judged by a simulated record in place of a spectrum: a measurement, no verdict.
+# The gains that leave least of the motion at a rate of the actuator: optima, not points where a search met its front.
 
-_REPEATS = 3  # of which the fastest counts; chosen
+RATES = 16  # rates of the actuator at which gains are sought; chosen
+_BEST_SAMPLES = 3  # of spread gains, looked at where optima are followed; chosen
+_KEPT_CURVES = 4  # in memory, for the front and the choice from it; chosen
 
 
-def record_cost(loop: TransferLoop, gains: Array, seed: int) -> tuple[float, float]:
-    """Measure the CPU time [s] of a record of 1000 s at 0.1 s, by a compiled scalar loop and by scipy.signal.lsim.
+@dataclass(frozen=True, eq=False)
+class RateCurve:
+    """Optima of a loop over the rms rate of the actuator in the worst disturbance.
 
-    Of one loop with the gains (g,) in white noise: each one holds its input exactly.
+    Attributes:
+        samples: gains to begin from, (n, g).
+        levels: rates [rad/s] up to that of the least motion within the task's restrictions, from that of the least rate
+            where a demand is followed; `optima`: gains (g,) by their rate, first of the ends.
     """
-    from scipy.signal import lsim
 
-    states = state_space(loop)
-    disturbance = np.random.default_rng(seed).standard_normal(round(RECORD_SECONDS / RECORD_STEP) + 1)
-    system = (states.closed_loop_matrix(gains), states.b[:, None], states.c[None], np.zeros((1, 1)))
-    times = RECORD_STEP * np.arange(len(disturbance))
-    return (
-        _least_cpu_time(lambda: loop_record(states, gains, disturbance, RECORD_STEP)),
-        _least_cpu_time(lambda: lsim(system, disturbance, times, interp=False)),
-    )
+    evaluator: GainEvaluator
+    samples: Array
+    levels: Array
+    optima: dict[float, Array]
+
+    @cached_property
+    def _judged(self) -> GainEvaluation:
+        """The samples judged, within the task's restrictions."""
+        return self.evaluator.evaluate(self.samples)
+
+    def gains_at(self, levels: Array) -> Array:
+        """Return gains of least motion at each level, followed from those at the nearest rates, (n, g)."""
+        for level in levels.tolist():
+            if level not in self.optima:
+                self.optima[level] = self._gains_at(level)
+        return np.array([self.optima[level] for level in levels.tolist()]).reshape(-1, self.samples.shape[1])
+
+    def _gains_at(self, level: float) -> Array:
+        # the share exp(-1/2) of a Rayleigh distribution lies beyond its rms, so that the variance allowed is the level
+        within = replace(self.evaluator.task.constraints, rate=level, rate_saturation=math.exp(-0.5))
+        slower, faster = ([rate for rate in self.optima if sign * rate < sign * level] for sign in (1.0, -1.0))
+        near = [max(slower), min(faster)] if slower and faster else []
+        return least_output_gains(
+            self.evaluator.within(within), self._samples_within(level), [self.optima[rate] for rate in near]
+        )
+
+    def _samples_within(self, level: float) -> Array:
+        """Return the samples that keep the task's restrictions at a rate, the best few; all where none does."""
+        kept = self._judged.is_feasible & (self._judged.variances[:, :, 2].max(axis=1) <= level**2)
+        order = np.argsort(np.where(kept, self._judged.objectives[:, 0], np.inf))
+        return self.samples[order[: min(int(kept.sum()), _BEST_SAMPLES)]] if kept.any() else self.samples
 
 
-def _least_cpu_time(run: Callable[[], object]) -> float:
-    seconds = []
-    for _ in range(_REPEATS):
-        began = time.process_time()
-        run()
-        seconds.append(time.process_time() - began)
-    return min(seconds)
+@lru_cache(maxsize=_KEPT_CURVES)
+def rate_curve(judge: GainEvaluator, seed: int) -> RateCurve:
+    """Return the optima of a loop over the rate: in decades of it where a demand is followed, as that needs some.
+
+    Without a level where no gains keep the restrictions.
+    """
+    task = judge.task
+    evaluator, samples = replace(judge, objectives=(task.motion,)), spread_gains(judge, seed)
+    ends = [least_output_gains(evaluator, samples)]
+    if task.demand is not None:
+        ends.insert(0, least_output_gains(replace(evaluator, objectives=(ACTUATOR_RATE,)), samples))
+    judged = judge.evaluate(np.array(ends))
+    if not judged.is_feasible.all():
+        return RateCurve(evaluator, np.vstack([samples, ends]), np.empty(0), {})
+    rates = np.sqrt(judged.variances[:, :, 2].max(axis=1))
+    shares = np.arange(1, RATES + 1) / RATES
+    levels = rates[-1] * shares if task.demand is None else np.geomspace(rates[0], rates[-1], RATES)
+    at_ends = dict(zip(rates.tolist(), ends, strict=True))
+    return RateCurve(evaluator, np.vstack([samples, ends]), levels, at_ends)
 
 
-# The Pareto front of a task: NSGA-II finds it, gradients press it to its edge, neighbours fill it.
+# The Pareto front of a task: optima along the rate and spread gains begin it, gradients press it to its edge,
+# neighbours fill it.
 
 _SPREADS = 0.06, 0.004  # of random neighbours in the first and last round, as shares of each gain's range; chosen
-_INFEASIBLE = 1e30  # in the place of infinity, which NSGA-II does not take
 # least objective whose logarithm is taken, and range that counts as one: guards against zero
 _LEAST_OBJECTIVE, _LEAST_RANGE = 1e-300, 1e-12
 
 
 @dataclass(frozen=True)
 class Effort:
-    """Effort spent on a front: NSGA-II, refinement by gradients, filling in by random neighbours."""
+    """Effort spent on a front: refinement by gradients, filling in by random neighbours."""
 
-    population: int = 200  # of NSGA-II; chosen
-    generations: int = 60  # of NSGA-II; chosen
     refined: int = 48  # points refined by gradients; chosen
     fill_rounds: int = 6  # rounds of random neighbours; chosen
-    neighbours: int = 40_000  # random neighbours a round; chosen
+    neighbours: int = 10_000  # random neighbours a round; chosen
 
 
 def pareto_front(
     evaluator: GainEvaluator, name: str, seed: int, report_progress: Callable[[str], None], effort: Effort
 ) -> ParetoFront:
     """Return the feasible non-dominated gains found; empty where nothing is feasible (see `refuse_infeasible`)."""
-    rng = np.random.default_rng(seed)
-    explored = _explore(evaluator, seed, effort)
+    rng, curve = np.random.default_rng(seed), rate_curve(evaluator, seed)
+    optima = curve.gains_at(curve.levels)
+    explored = np.vstack([curve.samples, *optima])[:, free_gain_bounds(evaluator)[0]]
     report_progress(f"front of {name}: explored")
     count = len(explored)
     kept, values = _feasible_non_dominated(evaluator, explored)
@@ -114,27 +163,6 @@ def _feasible_non_dominated(evaluator: GainEvaluator, free: Array) -> tuple[Arra
         return points, values
     first = non_dominated(values)
     return points[first], values[first]
-
-
-def _explore(evaluator: GainEvaluator, seed: int, effort: Effort) -> Array:
-    """Return every point that NSGA-II (Deb et al. 2002, IEEE Trans. Evol. Comput. 6, 182-197) asked about, (n, f)."""
-    from pymoo.algorithms.moo.nsga2 import NSGA2
-    from pymoo.core.problem import Problem
-    from pymoo.optimize import minimize as search
-
-    places, (low, high) = free_gain_bounds(evaluator)
-    visited: list[Array] = []
-
-    class GainProblem(Problem):
-        def _evaluate(self, x, out, *_args, **_named) -> None:
-            visited.append(np.array(x))
-            made = evaluator.evaluate(all_gains(evaluator, x))
-            out["F"] = np.where(np.isfinite(made.objectives), made.objectives, _INFEASIBLE)
-            out["G"] = np.where(np.isfinite(made.excess), made.excess, _INFEASIBLE)
-
-    problem = GainProblem(n_var=len(places), n_obj=len(evaluator.objectives), n_ieq_constr=3, xl=low, xu=high)
-    search(problem, NSGA2(pop_size=effort.population), ("n_gen", effort.generations), seed=seed, verbose=False)
-    return np.concatenate(visited)
 
 
 def spread_points(values: Array, count: int) -> Index:
@@ -327,7 +355,7 @@ def published_search(
     runs = genetic_runs(evaluator, settings, seed)
     answers = all_gains(evaluator, np.stack([run.gains for run in runs]))
     front = _searched_front(evaluator, runs[0])
-    result = _search_result(evaluator, settings, runs, answers, package_front, front, seed)
+    result = _search_result(evaluator, settings, runs, answers, package_front, front)
     choice = GainChoice(evaluator, answers[0], FRONT_NAME, _reasons(result))
     return PublishedSearch(choice, result, front)
 
@@ -339,11 +367,9 @@ def _search_result(
     answers: Array,
     package_front: ParetoFront,
     front: ParetoFront,
-    seed: int,
 ) -> GainSearch:
     judged, (low, high) = evaluator.evaluate(answers), free_gain_bounds(evaluator)[1]
     beaten = (package_front.objectives[:, None] < judged.objectives).all(axis=2).any(axis=0)
-    compiled, lsim = record_cost(evaluator.loop, answers[0], seed)
     return GainSearch(
         source=SOURCE,
         settings={field.name: _setting_text(getattr(settings, field.name)) for field in fields(settings)},
@@ -361,8 +387,6 @@ def _search_result(
         is_feasible=tuple(judged.is_feasible.tolist()),
         dominated=int(beaten.sum()),
         hypervolume=_covered_share(front.objectives, package_front.objectives),
-        compiled_record_s=compiled,
-        lsim_record_s=lsim,
     )
 
 

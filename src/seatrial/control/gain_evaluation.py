@@ -2,16 +2,17 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy.optimize import NonlinearConstraint, minimize
 
-from seatrial.control.task import OUTPUT, TuningTask
+from seatrial.control.task import OUTPUT, Seaway, SlowDisturbance, TuningTask
+from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import Array, Index
 from seatrial.physics.loops import LoopEvaluation, LoopSignal, Objective, Performance, TransferLoop
-from seatrial.physics.loops.objective import variance
+from seatrial.physics.loops.objective import WeightedVariance, variance
 from seatrial.physics.loops.performance import PEAKS, distinct_variances
 
 # Gains in, objectives and broken restrictions out, for all that a task meets; by the thousand, with gradients.
@@ -20,6 +21,7 @@ ACTUATOR = variance("actuator", "rad^2", LoopSignal.ACTUATOR)
 ACTUATOR_RATE = variance("actuator rate", "rad^2/s^2", LoopSignal.ACTUATOR, 1)
 ACTUATOR_ACCELERATION = variance("actuator acceleration", "rad^2/s^4", LoopSignal.ACTUATOR, 2)
 _ROUNDING = 1e-9  # relative excess over a limit that rounding explains
+_KEPT_LOOPS = 64  # disturbed loops kept in memory, whatever restrictions they are judged by; chosen
 _REMEMBERED = 8  # single sets of gains whose evaluation is kept; chosen
 _UNSTABLE = 1e30  # variance in the place of infinity, whose ratio to a limit is no number where there is none
 
@@ -47,6 +49,13 @@ class GainEvaluation:
         return np.all(self.excess <= _ROUNDING, axis=1)
 
 
+@lru_cache(maxsize=_KEPT_LOOPS)
+def _performance(met: Seaway | SlowDisturbance, loop: TransferLoop, rows: tuple[WeightedVariance, ...]) -> Performance:
+    """Return what a disturbance leaves of a loop in these variances."""
+    disturbed = met.disturbed(loop)
+    return Performance(disturbed, met.exposure(disturbed), rows)
+
+
 @dataclass(frozen=True, eq=False)
 class GainEvaluator:
     """Judges gains of one loop, the task's own or a richer one, by the task's objectives and restrictions."""
@@ -67,8 +76,11 @@ class GainEvaluator:
     def performances(self) -> tuple[Performance, ...]:
         """One for each thing that disturbs the loop."""
         rows = distinct_variances(self._judged)[0]
-        loops = [(met, met.disturbed(self.task.loop_at(met.U, self.loop))) for met in self.task.disturbances]
-        return tuple(Performance(loop, met.exposure(loop), rows) for met, loop in loops)
+        return tuple(_performance(met, self.task.loop_at(met.U, self.loop), rows) for met in self.task.disturbances)
+
+    def within(self, constraints: ControllerConstraints) -> "GainEvaluator":
+        """Return a judge of the same loops by other restrictions."""
+        return replace(self, task=replace(self.task, constraints=constraints))
 
     @cached_property
     def _has_own_Ms(self) -> tuple[bool, ...]:
@@ -157,7 +169,7 @@ class GainEvaluator:
         ])  # fmt: skip
         excess = np.zeros((3, len(gains)))
         frailest = self.performances[int(np.argmax([one.Ms[0] for one in evaluated]))]
-        excess[0] = frailest.Ms_gradient(gains) / self.task.constraints.Ms
+        excess[0] = frailest.sensitivity_peaks(gains)[1][0] / self.task.constraints.Ms
         for i, place in enumerate(at[0] for at in self._variance_indices[-3:-1]):
             worst = int(np.argmax([v[0, place] for v in made]))
             excess[1 + i] = rows[worst][place] / self.allowed_variances[i]
@@ -313,16 +325,14 @@ def motion_and_rate_variances(evaluator: GainEvaluator, gains: Array) -> Array:
 
 # The gains that leave least of the output within the restrictions: spread points, the best pressed by gradients.
 
-_SAMPLES, _STARTS = 4096, 3  # Sobol points, and those that are refined; chosen
+_SAMPLES, _STARTS = 4096, 3  # spread points, and those that are refined; chosen
 _RESTARTS = 5  # searches from the best, until one finds nothing better; chosen
 
 
 def spread_gains(evaluator: GainEvaluator, seed: int) -> Array:
-    """Return gains spread over their box, (n, g): Sobol points, half of them towards small gains."""
-    from scipy.stats import qmc
-
+    """Return gains spread over their box at random, (n, g), half of them towards small gains."""
     _, (low, high) = free_gain_bounds(evaluator)
-    unit = qmc.Sobol(len(low), seed=seed).random(_SAMPLES)
+    unit = np.random.default_rng(seed).random((_SAMPLES, len(low)))
     unit[::2] **= 3.0
     return all_gains(evaluator, low + unit * (high - low))
 
@@ -330,19 +340,22 @@ def spread_gains(evaluator: GainEvaluator, seed: int) -> Array:
 def least_output_gains(evaluator: GainEvaluator, samples: Array, near: Sequence[Array] = ()) -> Array:
     """Return the best samples pressed against the restrictions; the least first objective wins, (g,).
 
-    Where no sample keeps them, the one that breaks them least. near: gains (g,) that are begun from whatever they do.
+    Where no sample keeps them, the one that breaks them least. near: optima (g,) under restrictions that are nearly the
+    same; followed to these they are the answer, unless they break them or a sample is better (continuation: Allgower &
+    Georg 1990, Numerical Continuation Methods).
     """
-    judged = evaluator.evaluate(samples)
+    judged, (places, (low, _)) = evaluator.evaluate(samples), free_gain_bounds(evaluator)
     values = np.where(judged.is_feasible, judged.objectives[:, 0], np.inf)
-    places, (low, _) = free_gain_bounds(evaluator)
     order = np.argsort(values if np.isfinite(values).any() else judged.excess.max(axis=1))
     tried = [samples[i] for i in order[:_STARTS]]
+    followed = [_pressed_gains(evaluator, start[places]) for start in near]
+    best = _best_of(evaluator, [*followed, *tried])
+    if any(best is one for one in followed) and evaluator.evaluate(best[None]).is_feasible[0]:
+        return best
     faces = np.tile(tried[0][places], (len(places), 1))  # an optimum may lie where a term is left out
     np.fill_diagonal(faces, low)
-    tried += near
     starts = [*(start[places] for start in tried), *faces]
-    tried += [_pressed_gains(evaluator, start) for start in starts]
-    best = _best_of(evaluator, tried)
+    best = _best_of(evaluator, [best, *followed, *(_pressed_gains(evaluator, start) for start in starts)])
     for _ in range(_RESTARTS):  # the search's picture of the curvature begins anew
         again = _best_of(evaluator, [best, _pressed_gains(evaluator, best[places])])
         if np.allclose(again, best, rtol=_ROUNDING, atol=0.0):

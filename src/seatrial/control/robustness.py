@@ -6,7 +6,7 @@ from itertools import product
 
 import numpy as np
 
-from seatrial.control.ship import SEED, draw_parameters
+from seatrial.control.ship import SEED, draw_parameters, loops_drawn
 from seatrial.control.task import PlantUncertainty, TuningTask
 from seatrial.core.results.tuning import Robustness
 from seatrial.core.values import Array
@@ -38,7 +38,7 @@ def robustness(task: TuningTask, loop: TransferLoop, name: str, gains: Array) ->
     """
     own = loop.with_gains(gains)
     omega = np.geomspace(*frequency_band(own), _POINTS)
-    drawn_Ms, stable = _of_draws(task, own, omega)
+    drawn_Ms, stable = _of_draws(task, loop, gains, omega)
     corners = _corners(task.uncertainty)
     peaks = [_corner_Ms(own, corner, omega) for corner in corners]
     worst = int(np.argmax(peaks))
@@ -48,19 +48,18 @@ def robustness(task: TuningTask, loop: TransferLoop, name: str, gains: Array) ->
     )  # fmt: skip
 
 
-def _of_draws(task: TuningTask, loop: TransferLoop, omega: Array) -> tuple[float, tuple[bool, ...]]:
+def _of_draws(task: TuningTask, loop: TransferLoop, gains: Array, omega: Array) -> tuple[float, tuple[bool, ...]]:
     """Return the largest Ms of the ships drawn and whether each is stable; infinite where one is not."""
     if task.trimmed_ship is None:
         return math.nan, ()
     samples = draw_parameters(task.trimmed_ship, task.uncertainty.draws, SEED)
     without_trim = samples.draws - len(samples.ships)
-    stable = (*samples.stable_ships(loop, loop.gain_values), *[False] * without_trim)
+    stable = (*samples.stable_ships(loop, gains), *[False] * without_trim)
     if not stable:
         return math.nan, ()
     if not all(stable):
         return math.inf, stable
-    plants = [plant for sides in samples.plants for plant in sides]
-    return max(_peak(replace(loop, plant=plant).open_loop(omega)) for plant in plants), stable
+    return max(_peak(gains @ one.open_loop_terms(omega)) for one in loops_drawn(loop, samples)), stable
 
 
 def _corners(box: PlantUncertainty) -> list[_Corner]:

@@ -312,7 +312,7 @@ def _own_gains(evaluator: GainEvaluator, samples: Array) -> Array:
         within = replace(
             evaluator.task.constraints, rate=share * math.sqrt(used), rate_saturation=math.exp(-0.5)
         )  # fmt: skip
-        slower = replace(evaluator, task=replace(evaluator.task, constraints=within))
+        slower = evaluator.within(within)
         tried.append(least_output_gains(slower, np.concatenate([samples, tried])))
     return min(tried, key=lambda gains: shortfall(evaluator.task, evaluator.loop, gains, draws=0)[0])
 

@@ -300,7 +300,10 @@ def plant_text(ship: TrimmedShip) -> str:
 
 def linearise(ship: TrimmedShip) -> LinearSystem:
     """Return the matrices about the trim, the mean over both sides."""
-    one, other = _one_sided_matrices(ship)
+    return _mean_matrices(*_one_sided_matrices(ship))
+
+
+def _mean_matrices(one: LinearSystem, other: LinearSystem) -> LinearSystem:
     return LinearSystem(*(0.5 * (getattr(one, k) + getattr(other, k)) for k in ("A", "B", "C", "D")))
 
 
@@ -432,7 +435,7 @@ class ParameterDraws:
 
     def stable_ships(self, loop: TransferLoop, gains: Array) -> tuple[bool, ...]:
         """Return for each ship whether gains (g,) stabilise it, on the straight course and starting either turn."""
-        rows = [d + gains @ n for d, n in _characteristic_polynomials(loop, self)]
+        rows = [d + gains @ n for d, n in (one.polynomials for one in loops_drawn(loop, self))]
         stable = iter([is_hurwitz(np.ascontiguousarray(row), len(row) - 1) for row in rows])
         return tuple(all(list(islice(stable, len(plants)))) for plants in self.plants)
 
@@ -470,13 +473,14 @@ def stable_draws(
 
 
 def _plant_blocks(ship: TrimmedShip) -> tuple[Block, ...]:
-    mean, _ = plant_and_disturbance(ship)
-    sides = one_sided_plants(ship)
-    alike = all(side.den == mean.den and side.num == mean.num for side in sides)
-    return (mean,) if alike else (mean, *sides)
+    sides = _one_sided_matrices(ship)
+    matrices = (_mean_matrices(*sides), *sides)
+    blocks = [_transfer_function(ship, one, ship.actuator) for one in matrices]
+    alike = all(side.den == blocks[0].den and side.num == blocks[0].num for side in blocks[1:])
+    return (blocks[0],) if alike else tuple(blocks)
 
 
 @lru_cache(maxsize=_KEPT)
-def _characteristic_polynomials(loop: TransferLoop, samples: ParameterDraws) -> tuple[tuple[Array, Array], ...]:
-    """Return d and n of the loop before each plant drawn, in a row: it is stable where d + gains n is, by Routh."""
-    return tuple(replace(loop, plant=plant).polynomials for plants in samples.plants for plant in plants)
+def loops_drawn(loop: TransferLoop, samples: ParameterDraws) -> tuple[TransferLoop, ...]:
+    """Return the loop before each plant drawn, in a row."""
+    return tuple(replace(loop, plant=plant) for plants in samples.plants for plant in plants)

@@ -1,10 +1,9 @@
 """Controllers simulated in what disturbs them, with what their actuators cannot do."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
-from itertools import accumulate
+from functools import lru_cache, partial
 
 import numpy as np
 from scipy.special import stdtrit
@@ -13,6 +12,7 @@ from seatrial.control.gain_evaluation import gain_evaluator
 from seatrial.control.task import OUTPUT, Seaway, SimulationSettings, SlowDisturbance, TuningTask
 from seatrial.core.results.tuning import DisturbanceSimulation, PairedDifference, SeawaySimulation
 from seatrial.core.values import Array, Channel, DivergedError, InputError, Record, frozen
+from seatrial.numerics.kernels.linear import replay
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.hydro.excitation import Complex, encounter_frequency
 from seatrial.physics.loops import LoopSignal, TransferLoop, WaveEffect
@@ -53,7 +53,7 @@ def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: A
         InputError: the task has no sea or no trials, or the sea does not move the ship.
         DivergedError: the loop runs away.
     """
-    reductions, energies = _seaway_trials(task, loop, gains, seed)
+    reductions, energies = _seaway_trials(task, loop, gains, seed, actuator_stages(task))
     seaway, trials = _sea_and_trials(task)
     steered, everything = closed_loop(task, loop, gains, seaway.U, trials.dt), _actuator_limits(task)
     met = disturbance_series(seaway, trials, seed)[0]
@@ -68,38 +68,49 @@ def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: A
     return SeawaySimulation(name, linear, limited, stalled, shown, drive, drag)
 
 
-def seaway_reductions(task: TuningTask, loop: TransferLoop, gains: Array, seed: int) -> Array:
-    """Return reductions of the output's rms in each sea against no control there, (seeds, 3).
+def seaway_reductions(
+    task: TuningTask, loop: TransferLoop, gains: Array, seed: int, stages: Sequence[ActuatorLimits] | None = None
+) -> Array:
+    """Return reductions of the output's rms in each sea against no control there, (seeds, stages).
 
-    Columns: without limits, with those of angle and rate, with stall as well. Raises what `simulate_in_seaway` does.
+    stages: limits of the actuator, by default those of `actuator_stages`. Raises what `simulate_in_seaway` does.
     """
-    return _seaway_trials(task, loop, gains, seed)[0]
+    return _seaway_trials(task, loop, gains, seed, actuator_stages(task) if stages is None else stages)[0]
 
 
-def _seaway_trials(task: TuningTask, loop: TransferLoop, gains: Array, seed: int) -> tuple[Array, Array]:
-    """Return `seaway_reductions`, and J in an hour by drive and drag with all limits, (seeds, 2); nan undeclared."""
+def actuator_stages(task: TuningTask) -> tuple[ActuatorLimits, ActuatorLimits, ActuatorLimits]:
+    """Return the actuator without limits, with those of angle and rate, and with stall as well."""
+    everything = _actuator_limits(task)
+    return UNLIMITED, everything.without_stall, everything
+
+
+def _seaway_trials(
+    task: TuningTask, loop: TransferLoop, gains: Array, seed: int, stages: Sequence[ActuatorLimits]
+) -> tuple[Array, Array]:
+    """Return `seaway_reductions`, and J in an hour by drive and drag at the last stage, (seeds, 2); nan undeclared."""
     seaway, trials = _sea_and_trials(task)
-    steered, everything = closed_loop(task, loop, gains, seaway.U, trials.dt), _actuator_limits(task)
+    steered = closed_loop(task, loop, gains, seaway.U, trials.dt)
     seas = disturbance_series(seaway, trials, seed)
 
     def of_one(number: int) -> Array:
-        stages = (UNLIMITED, everything.without_stall, everything)
         runs = [_trial(task, steered, seas[number], seaway, limits, seed + number) for limits in stages]
         return np.array([*(rms for rms, _ in runs), *_hourly_energies(task, steered, runs[-1][1], seaway.U)])
 
     free = np.array(_uncontrolled_rms(task, seaway, seed))
     columns = np.array(map_in_threads(of_one, range(len(seas))))
-    return 1.0 - columns[:, :3] / free[:, None], columns[:, 3:]
+    return 1.0 - columns[:, :-2] / free[:, None], columns[:, -2:]
 
 
 def _hourly_energies(task: TuningTask, run: ClosedLoop, angles: Array, U: float) -> tuple[float, float]:
     """Return J in an hour by the drive and by the drag of the actuator's angles (n,) after the run-in, at U [m/s].
 
-    Rates are those from sample to sample of the controller, as everywhere.
+    Rates are those from step to step. Without a servo they are those from sample to sample: an actuator that follows
+    an order at once would take any work.
     """
-    every = 1 if run.loop.sampling is None else steps_a_sample(run.loop.sampling, run.dt)
-    step, rates = every * run.dt, actuator_rate(run, angles)[::every]
-    drive = math.nan if task.drive is None else task.drive.hourly_energy(rates, step)
+    sampling = run.loop.sampling
+    every = 1 if sampling is None or run.loop.servo else steps_a_sample(sampling, run.dt)
+    step = every * run.dt
+    drive = math.nan if task.drive is None else task.drive.hourly_energy(np.diff(angles[::every]) / step, step)
     return drive, math.nan if task.surface is None else task.surface.hourly_energy(float(np.mean(angles**2)), U)
 
 
@@ -355,13 +366,38 @@ def _simulate(
     clock, model = disturbance_clock(met, loop), plant_model(loop)
     actuator, disturbance = model.input_names
     run = ClosedLoop(model, loop, loop.gain_values, clock.dt, actuator, disturbance, loop.output)
+    output = model.states.index(loop.output)
 
-    def of_one(number: int) -> Array:
+    def of_one(number: int, each: ActuatorLimits) -> tuple[Array, Array]:
         series = disturbance_realisation(met, loop, clock, number)
         noise = None if loop.sampling is None else sample_noise(loop.sampling, clock.count, number)
-        return np.stack([_mean_squares(run, series, clock, each, noise) for each in (UNLIMITED, limits)])
+        states, moved = run.run(series, each, noise=noise)
+        return states[:, output], moved
 
-    free, held = np.stack(map_in_threads(of_one, [seed + k for k in range(SEEDS)]), axis=1)
+    return rms_in_disturbance(met, run, of_one, clock, limits, expected, seed)
+
+
+def rms_in_disturbance(
+    met: Seaway | SlowDisturbance,
+    run: ClosedLoop,
+    of_one: Callable[[int, ActuatorLimits], tuple[Array, Array]],
+    clock: DisturbanceClock,
+    limits: ActuatorLimits,
+    expected: Array,
+    seed: int,
+) -> DisturbanceSimulation:
+    """Return rms of output, actuator and its rate of a loop in `SEEDS` realisations, without and with limits.
+
+    of_one: output and actuator (n,) in the realisation of a number, within limits.
+    expected: rms by linear theory, (3,).
+    """
+
+    def mean_squares(number: int) -> Array:
+        return np.stack(
+            [_mean_squares(run, partial(of_one, number, each), clock.first) for each in (UNLIMITED, limits)]
+        )
+
+    free, held = np.stack(map_in_threads(mean_squares, [seed + k for k in range(SEEDS)]), axis=1)
     rms = np.sqrt(free.mean(axis=0))
     error = free.std(axis=0, ddof=1) / math.sqrt(SEEDS) / (2.0 * rms)
     columns = (expected, rms, np.sqrt(held.mean(axis=0)), error)
@@ -442,7 +478,12 @@ def gauss_markov(bandwidth: float, dt: float, count: int, rng: np.random.Generat
     """Return exact steps of a first-order Gauss-Markov process of unit rms (Gelb 1974, section 3.8), (count,)."""
     stay = math.exp(-bandwidth * dt)
     kicks = math.sqrt(1.0 - stay**2) * rng.standard_normal(count)
-    return np.fromiter(accumulate(kicks.tolist(), lambda now, kick: stay * now + kick), np.float64, count)
+    one, last, out = np.ones((1, 1, 1)), np.full((1, 1, 1), stay), np.empty((count, 1))
+    replay(
+        last, one, 0.0 * one, last, one, np.zeros(1, dtype=np.int64), kicks[:, None], np.array([0, count]), 1,
+        np.zeros((1, 1)), out, np.full(1, -1),
+    )  # fmt: skip
+    return out[:, 0]
 
 
 def actuator_rate(run: ClosedLoop, moved: Array) -> Array:
@@ -455,15 +496,11 @@ def actuator_rate(run: ClosedLoop, moved: Array) -> Array:
     return (moved[every:] - moved[:-every]) / (every * run.dt)
 
 
-def _mean_squares(
-    run: ClosedLoop, disturbance: Array, clock: DisturbanceClock, limits: ActuatorLimits, noise: Array | None
-) -> Array:
+def _mean_squares(run: ClosedLoop, simulated: Callable[[], tuple[Array, Array]], first: int) -> Array:
     """Return mean squares of output, actuator and its rate, (3,); infinite where the limits let the loop run away."""
-    first = clock.first
     try:
-        states, moved = run.run(disturbance, limits, noise=noise)
+        output, moved = simulated()
     except DivergedError:
         return np.full(len(SIGNALS), np.inf)
-    output, rate = states[first:, run.model.states.index(run.output)], actuator_rate(run, moved[first:])
-    squares = [float(np.mean(signal**2)) for signal in (output, moved[first:], rate)]
-    return np.array(squares)
+    signals = (output[first:], moved[first:], actuator_rate(run, moved[first:]))
+    return np.array([float(np.mean(signal**2)) for signal in signals])

@@ -97,7 +97,7 @@ def _objective_cells(values: Array, tuning: Tuning) -> list[str]:
 
 
 def search_sentences(tuning: Tuning) -> tuple[str, ...]:
-    """Return what the search covers of the front, and what it would cost with records in time; no verdict on time."""
+    """Return what the search covers of the front, and what it cost; no verdict on time."""
     search = tuning.search
     if search is None:
         return ()
@@ -109,10 +109,7 @@ def search_sentences(tuning: Tuning) -> tuple[str, ...]:
     )
     cost = (
         f"One search took {fixed(search.cpu_s, 3)} s of CPU time for {exact(search.evaluations, 12)} controllers, each "
-        f"judged in {counted(len(tuning.seas), 'sea')}. In time, with a record of 1000 s in "
-        f"steps of 0.1 s each, it would take {exact(search.compiled_ratio, 2)} times as long by a compiled loop "
-        f"({significant(1e3 * search.compiled_record_s, 2)} ms a record), {exact(search.lsim_ratio, 2)} times by "
-        f"scipy.signal.lsim ({significant(1e3 * search.lsim_record_s, 2)} ms), on this machine."
+        f"judged in {counted(len(tuning.seas), 'sea')}."
     )
     return tuple(text for text in (covered, cost) if text)
 

@@ -157,7 +157,7 @@ def test_limits_that_no_bandwidth_keeps_are_refused_with_what_is_possible() -> N
     own = craft(cross_drive())
     spectrum = SlowPush("gusts", (0.01,) * 6, 0.2).spectrum()
     point, frequencies = station_point(own, 0.2, 0.5, generalised_inverse(own)), margin_frequencies(own, 0.15)
-    with pytest.raises(InputError, match=r"no bandwidth keeps the limits.*Ms 1\.\d+ for 1.01, joint Ms"):
+    with pytest.raises(InputError, match=r"no bandwidth keeps the limits.*Ms 1\.\d+ for 1.01[^0-9]"):
         choose_bandwidth(StationDesign((point,), generalised_inverse(own), 0.15, 1.01, spectrum, frequencies))
 
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from seatrial.numerics.kernels.loop import evaluate_loops, is_hurwitz, variance_gradients
+from seatrial.numerics.kernels.loop import evaluate_loops, is_hurwitz, sensitivity_peaks, variance_gradients
 
 EMPTY = np.empty((2, 0))
 scale = st.sampled_from([-3.0, -1e-3, 1.0, 50.0])
@@ -121,3 +121,23 @@ def test_slopes_equal_the_complex_step(rng: np.random.Generator) -> None:
         mixed = on_both[0] * s + on_both[1] * t + 2.0 * s * ((x - 1.0) * on_both[2] + y * on_both[3])
         sums = np.concatenate([on_s @ s + heard @ t, on_t @ t, [mixed.sum()]])
         np.testing.assert_allclose(out[:, i], sums.imag / h, rtol=1e-10)
+
+
+def test_peaks_of_the_sensitivity_are_its_largest_maxima_with_their_slopes() -> None:
+    w, gains = np.linspace(0.05, 6.0, 40_001), np.array([2.0, 0.7])
+    swings = [a / (b**2 - w**2 + 0.05j * b * w) for a, b in ((0.3, 0.8), (0.5, 1.6), (1.0, 3.0), (1.0, 5.0))]
+    terms = np.stack([np.sum(swings, axis=0), 1j * w * swings[1]])
+
+    def peaks_and_slopes(k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        peaks, slopes = np.empty(3), np.empty((3, 2))
+        sensitivity_peaks(k, np.ascontiguousarray(terms.real), np.ascontiguousarray(terms.imag), peaks, slopes)
+        return peaks, slopes
+
+    values = 1.0 / np.abs(1.0 + gains @ terms)
+    maxima = values[1:-1][(values[1:-1] > values[:-2]) & (values[1:-1] > values[2:])]
+    peaks, slopes = peaks_and_slopes(gains)
+    assert len(maxima) > 3
+    np.testing.assert_allclose(peaks, np.sort(maxima)[:-4:-1], rtol=1e-4)
+    for j, step in enumerate(1e-6 * np.eye(2)):
+        differences = (peaks_and_slopes(gains + step)[0] - peaks_and_slopes(gains - step)[0]) / 2e-6
+        np.testing.assert_allclose(slopes[:, j], differences, rtol=1e-5, atol=1e-6)

@@ -173,6 +173,12 @@ def test_a_reversal_costs_the_kinetic_energy_of_its_peak_over_the_efficiency() -
     assert ActuatorDrive(800.0, 0.8).energy(peak**2 / 2.0) == pytest.approx(0.5 * 800.0 * peak**2 / 0.8)
 
 
+def test_a_rate_that_rises_in_steps_takes_the_work_of_each() -> None:
+    # up to 2, back to 1, up to 3, over to -2 and down to rest: 4 + (9 - 1) + 4
+    made = ActuatorDrive(10.0, 0.5).hourly_energy(np.array([0.0, 2.0, 1.0, 3.0, -2.0, -1.0]), 0.5)
+    assert made == pytest.approx(0.5 * 10.0 * 16.0 / 0.5 * 3600.0 / 3.0)
+
+
 def test_the_energy_of_a_swinging_drive_is_that_of_its_reversals() -> None:
     drive, dt, omega, amplitude = ActuatorDrive(800.0, 0.8), 0.01, 2.0 * math.pi / 8.0, 0.2
     rates = amplitude * omega * np.sin(omega * dt * np.arange(1 + round(3600.0 / dt)))

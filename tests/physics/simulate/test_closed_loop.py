@@ -1,6 +1,7 @@
 """A loop in time: the linear answer where nothing bites, and what limits, stall and trims do."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import lsim
 
+from seatrial.core.equations import Model
 from seatrial.core.values import Array, DivergedError, InputError, Parameter, Parameters, Record
 from seatrial.numerics.kernels.feedback import effective_angle
 from seatrial.physics.loops import Block, Term, TransferLoop
@@ -16,7 +18,7 @@ from seatrial.physics.loops.structures import Preamplifier, fin_loop
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.published import container_ship
 from seatrial.physics.models.waterjet import waterjet
-from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop, closed_loop, hold_equivalent
+from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop, hold_equivalent
 
 WASHOUT, PRINTED = fin_loop(Preamplifier.WASHOUT), fin_loop(Preamplifier.PRINTED)
 FINS = {"actuator": "alpha_f", "disturbance_input": "alpha_w", "output": "phi"}
@@ -37,6 +39,13 @@ def autopilot(plant: Block) -> TransferLoop:
     """Proportional and filtered derivative gains."""
     terms = (Term("P", Block("proportional")), Term("D", Block("derivative", (1.0, 0.0), (0.5, 1.0))))
     return TransferLoop("autopilot", (), terms, (), (), plant, plant, gains("P", "D"), "psi", "delta", "w")
+
+
+def closed_loop(
+    model: Model, loop: TransferLoop, values: Array, disturbance: Array, dt: float, *,
+    limits: ActuatorLimits = UNLIMITED, reference: Array | None = None, **where: Any,
+) -> Record:  # fmt: skip
+    return ClosedLoop(model, loop, values, dt, **where).record("closed", disturbance, limits, reference)
 
 
 def swell(time: Array) -> Array:

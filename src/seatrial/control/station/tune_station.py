@@ -223,11 +223,14 @@ def _refuse(design: StationDesign, best: Array) -> None:
     loops = design.loops(position, heading)
     worst = np.max([loop.peaks() for loop in loops], axis=0)
     delay = min(loop.tolerated_dead_time for loop in loops)
+    asked = (1.0 + _DELAY_SHARE) * design.dead_time
+    broken = [f"{name} {reached:.3g} for {limit:.3g}"
+              for name, reached, limit in (("Ms", worst[:3].max(), design.Ms), ("joint Ms", worst[3], JOINT_MS))
+              if reached > limit]  # fmt: skip
+    broken += [f"tolerated dead time {delay:.3g} s for {asked:.3g} s"] if delay < asked else []
     raise InputError(
-        f"station: no bandwidth keeps the limits in this current (Ms {worst[:3].max():.3g} for {design.Ms:g}, joint Ms "
-        f"{worst[3]:.3g} for {JOINT_MS:g}, dead time {delay:.3g} s for "
-        f"{(1.0 + _DELAY_SHARE) * design.dead_time:.3g} s); give a slower current, more limits.Ms, or "
-        "quicker thrusters"
+        f"station: no bandwidth keeps the limits in this current ({', '.join(broken)}); give a slower current, more "
+        "limits.Ms, or quicker thrusters"
     )
 
 

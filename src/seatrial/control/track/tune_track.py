@@ -14,12 +14,9 @@ from seatrial.control.gain_evaluation import GainEvaluator, gain_evaluator
 from seatrial.control.ship import DRAWS, linearise
 from seatrial.control.simulation import (
     LEAST_FREQUENCY,
-    SEEDS,
-    DisturbanceClock,
-    actuator_rate,
     disturbance_clock,
     disturbance_realisation,
-    named_signals,
+    rms_in_disturbance,
 )
 from seatrial.control.task import OUTPUT, Seaway, SlowDisturbance, TrackDemand, TrimmedShip, TuningTask
 from seatrial.control.track.paths import CURRENT, EAST, CornerTrial, HeadingLoop, Reach
@@ -27,11 +24,10 @@ from seatrial.core.equations import Model
 from seatrial.core.equations.model import stored_model
 from seatrial.core.results.tuning import ControllerConstraints, DisturbanceSimulation, TrackKeeping
 from seatrial.core.values import Array, DivergedError, InputError, Parameter, Parameters
-from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import Block, Term, TransferLoop, margins
 from seatrial.physics.loops.autopilot import lag_frequency
-from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop
+from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop
 from seatrial.physics.simulate.craft_control import LineOfSight, follow_track
 
 # The linear ship behind heading and track as a model: the plant of linear theory, so that only limits are new.
@@ -111,15 +107,12 @@ class TrackTrial:
                 *(np.abs(response) / rms for response, rms in zip(self._responses(met, omega), expected, strict=False))
             )
 
-        def of_one(number: int) -> Array:
+        def of_one(number: int, each: ActuatorLimits) -> tuple[Array, Array]:
             series = disturbance_realisation(met, loop, clock, number, counted)
-            return np.stack([self._mean_squares(run, series, clock, each) for each in (UNLIMITED, self.limits)])
+            path = follow_track(run, self.guidance, series, limits=each)
+            return path.error, path.actuator
 
-        free, held = np.stack(map_in_threads(of_one, [seed + k for k in range(SEEDS)]), axis=1)
-        rms = np.sqrt(free.mean(axis=0))
-        error = free.std(axis=0, ddof=1) / math.sqrt(SEEDS) / (2.0 * rms)
-        columns = (expected, rms, np.sqrt(held.mean(axis=0)), error)
-        return DisturbanceSimulation(met.description, SEEDS, *(named_signals(column) for column in columns))
+        return rms_in_disturbance(met, run, of_one, clock, self.limits, expected, seed)
 
     def predicted(self, met: Seaway | SlowDisturbance) -> Array:
         """Return the rms of distance, rudder and its rate by linear theory, (3,)."""
@@ -144,15 +137,6 @@ class TrackTrial:
         if isinstance(met, Seaway):
             return _YAW_RATE
         return EAST if met.path == CURRENT.track else self.heading.ship.actuator
-
-    def _mean_squares(self, run: ClosedLoop, series: Array, clock: DisturbanceClock, limits: ActuatorLimits) -> Array:
-        """Return mean squares of distance, rudder and its rate, (3,); infinite where the limits let the craft go."""
-        try:
-            path = follow_track(run, self.guidance, series, limits=limits)
-        except DivergedError:
-            return np.full(3, np.inf)
-        rate = actuator_rate(run, path.actuator[clock.first :])
-        return np.array([float(np.mean(x**2)) for x in (path.error[clock.first :], path.actuator[clock.first :], rate)])
 
 
 # The outer loop of track keeping as a tuning of its own: from the distance to the heading order.

@@ -29,9 +29,6 @@ if TYPE_CHECKING:
 
 # A published search for gains: the answers of several seeds, and what one search costs.
 
-RECORD_SECONDS, RECORD_STEP = 1000.0, 0.1
-"""s: length and step of the record that each controller would be simulated with (Yu et al. 2014, section 3)."""
-
 
 @dataclass(frozen=True, eq=False)
 class GainSearch:
@@ -61,29 +58,12 @@ class GainSearch:
         Number,
         Field(description="of what the first search saw within the constraints, over that of the package's front"),
     ]
-    compiled_record_s: Annotated[
-        Number,
-        Field(description="CPU time of one record of 1000 s at 0.1 s of one controller, compiled scalar loop"),
-    ]
-    lsim_record_s: Annotated[Number, Field(description="the same by scipy.signal.lsim")]
 
     @computed_field(description="J of the fittest in each generation, first seed")
     @property
     def history(self) -> tuple[float, ...]:
         """Return J of the fittest in each generation of the first seed."""
         return tuple(float(value) for value in self.histories[0])
-
-    @computed_field(description="CPU time of the search with compiled records for each controller, over its own")
-    @property
-    def compiled_ratio(self) -> float:
-        """Return how many times as long the search takes with records by the compiled loop."""
-        return self.compiled_record_s * self.evaluations / self.cpu_s
-
-    @computed_field(description="the same with scipy.signal.lsim")
-    @property
-    def lsim_ratio(self) -> float:
-        """Return how many times as long the search takes with records by lsim."""
-        return self.lsim_record_s * self.evaluations / self.cpu_s
 
     @property
     def feasible_count(self) -> int:

@@ -43,6 +43,30 @@ def _return_difference(k, re, im, x, y):
             y[f] += k[i] * im[i, f]
 
 
+@kernel(F8(VECTOR, VECTOR, I8), **_ANY_ORDER_SUMS)
+def _nearest_to_zero(x, y, place):
+    """Return where in -1 to 1 about a sample the complex parabola through its neighbours comes nearest to zero."""
+    bx, by = 0.5 * (x[place + 1] - x[place - 1]), 0.5 * (y[place + 1] - y[place - 1])
+    cx = 0.5 * (x[place + 1] + x[place - 1]) - x[place]
+    cy = 0.5 * (y[place + 1] + y[place - 1]) - y[place]
+    u = 0.0
+    for _ in range(4):
+        zx, zy = x[place] + u * (bx + u * cx), y[place] + u * (by + u * cy)
+        dx, dy = bx + 2.0 * u * cx, by + 2.0 * u * cy
+        curved = dx * dx + dy * dy + 2.0 * (zx * cx + zy * cy)
+        if not curved > 0.0:
+            break
+        u = min(max(u - (zx * dx + zy * dy) / curved, -1.0), 1.0)
+    return u
+
+
+@kernel(F8(VECTOR, I8, F8), **_ANY_ORDER_SUMS)
+def _on_parabola(values, place, u):
+    """Return the value at u in -1 to 1 of the parabola through a sample and its neighbours."""
+    before, after = 0.5 * u * (u - 1.0), 0.5 * u * (u + 1.0)
+    return before * values[place - 1] + (1.0 - u * u) * values[place] + after * values[place + 1]
+
+
 @kernel(F8(VECTOR, VECTOR), **_ANY_ORDER_SUMS)
 def _least_return_difference(x, y):
     """Return the least |1 + L| along the curve x + j y: a complex parabola through the nearest three samples."""
@@ -56,19 +80,47 @@ def _least_return_difference(x, y):
             place = f
     if place == 0 or place == count - 1:
         return np.sqrt(least)
-    bx, by = 0.5 * (x[place + 1] - x[place - 1]), 0.5 * (y[place + 1] - y[place - 1])
-    cx = 0.5 * (x[place + 1] + x[place - 1]) - x[place]
-    cy = 0.5 * (y[place + 1] + y[place - 1]) - y[place]
-    u = 0.0
-    for _ in range(4):
-        zx, zy = x[place] + u * (bx + u * cx), y[place] + u * (by + u * cy)
-        dx, dy = bx + 2.0 * u * cx, by + 2.0 * u * cy
-        curved = dx * dx + dy * dy + 2.0 * (zx * cx + zy * cy)
-        if not curved > 0.0:
-            break
-        u = min(max(u - (zx * dx + zy * dy) / curved, -1.0), 1.0)
-    zx, zy = x[place] + u * (bx + u * cx), y[place] + u * (by + u * cy)
+    u = _nearest_to_zero(x, y, place)
+    zx, zy = _on_parabola(x, place, u), _on_parabola(y, place, u)
     return np.sqrt(min(zx * zx + zy * zy, least))
+
+
+@kernel(void(VECTOR, MATRIX, MATRIX, VECTOR, MATRIX), **_ANY_ORDER_SUMS)
+def sensitivity_peaks(k, re, im, peaks, slopes):
+    """Compute the largest peaks of |S|, largest first, and d |S| / d gains, by parabolas; zero where there are fewer.
+
+    k: gains (g,). re, im: L_i (g, f) over the band. peaks (p,); slopes (p, g).
+    """
+    count = re.shape[1]
+    x, y, size = np.empty(count), np.empty(count), np.empty(count)
+    places, peak_count, smallest = np.empty(peaks.size, np.int64), 1, np.inf
+    _return_difference(k, re, im, x, y)
+    for f in range(count):
+        size[f] = x[f] * x[f] + y[f] * y[f]
+        if size[f] < smallest:
+            smallest, places[0] = size[f], min(max(f, 1), count - 2)
+    for f in range(1, count - 1):
+        if f == places[0] or size[f] > size[f - 1] or size[f] > size[f + 1]:
+            continue
+        rank = peak_count
+        while rank > 1 and size[f] < size[places[rank - 1]]:
+            rank -= 1
+        if rank < peaks.size:
+            peak_count = min(peak_count + 1, peaks.size)
+            for later in range(peak_count - 1, rank, -1):
+                places[later] = places[later - 1]
+            places[rank] = f
+    peaks[:] = 0.0
+    slopes[:] = 0.0
+    for row in range(peak_count):
+        place = places[row]
+        u = _nearest_to_zero(x, y, place)
+        zx, zy = _on_parabola(x, place, u), _on_parabola(y, place, u)
+        least = np.sqrt(zx * zx + zy * zy)
+        peaks[row] = 1.0 / least
+        for i in range(k.size):
+            toward = zx * _on_parabola(re[i], place, u) + zy * _on_parabola(im[i], place, u)
+            slopes[row, i] = -toward / least**3
 
 
 @kernel(F8(MATRIX, I8, VECTOR, VECTOR, VECTOR, VECTOR), **_ANY_ORDER_SUMS)

@@ -34,13 +34,14 @@ class ActuatorDrive:
         return self.inertia * rate_variance / self.efficiency
 
     def hourly_energy(self, rates: Array, dt: float) -> float:
-        """Return the energy [J] in an hour of rates (n,) [rad/s] every dt [s]: I peak^2 / 2 between two reversals.
+        """Return the energy [J] in an hour of rates (n,) [rad/s] every dt [s]: the work by which they grow.
 
-        The peak is that of the rate; steps of the order within a swing take no energy of their own.
+        I rate^2 / 2 is given whenever the rate grows, from zero where it changes sign, and nothing comes back. Of a
+        smooth swing that is I peak^2 / 2.
         """
-        turns = 1 + np.flatnonzero(np.diff(np.signbit(rates)))
-        peaks = np.maximum.reduceat(rates**2, np.concatenate([[0], turns]))
-        return float(0.5 * self.inertia * peaks.sum() / self.efficiency * SECONDS_PER_HOUR / (dt * len(rates)))
+        grown = rates[1:] ** 2 - np.where(np.signbit(rates[1:]) == np.signbit(rates[:-1]), rates[:-1] ** 2, 0.0)
+        work = 0.5 * self.inertia * np.maximum(grown, 0.0).sum() / self.efficiency
+        return float(work * SECONDS_PER_HOUR / (dt * len(rates)))
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from seatrial.core.values import Array, InputError
-from seatrial.numerics.kernels.loop import evaluate_loops, variance_gradients
+from seatrial.numerics.kernels.loop import evaluate_loops, sensitivity_peaks, variance_gradients
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops.encounter_spectrum import EncounterSpectrum, disturbance_spectrum, nodes
 from seatrial.physics.loops.loop import TransferLoop
@@ -303,54 +303,21 @@ class Performance:
         variance_gradients(np.ascontiguousarray(gains, dtype=np.float64), re, im, *self._node_weights, out)
         return out
 
-    def Ms_gradient(self, gains: Array) -> Array:
-        """d Ms / d gains (g,) of what `evaluate` gives, by the same parabola: its place has no first-order effect."""
-        return self.sensitivity_peaks(gains)[1][0]
-
     def sensitivity_peaks(self, gains: Array) -> tuple[Array, Array]:
         """Return the largest peaks of |S| over the band, largest first, and their slopes d |S| / d gains, by parabolas.
 
         (3,) and (3, g); zero where there are fewer peaks.
         """
         _, _, re, im = self._open_loop_tables
-        terms = re + 1j * im
-        z = 1.0 + gains @ terms
-        size = np.abs(z)
-        inner = 1 + np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:]))
-        first = int(np.clip(np.argmin(size), 1, len(z) - 2))
-        places = list(dict.fromkeys([first, *inner[np.argsort(size[inner], kind="stable")].tolist()]))[:PEAKS]
-        peaks, slopes = np.zeros(PEAKS), np.zeros((PEAKS, len(gains)))
-        for row, place in enumerate(places):
-            near = slice(place - 1, place + 2)
-            peaks[row], slopes[row] = self._peak_at(terms[:, near], z[near])
+        peaks, slopes = np.empty(PEAKS), np.empty((PEAKS, len(gains)))
+        sensitivity_peaks(np.ascontiguousarray(gains, dtype=np.float64), re, im, peaks, slopes)
         return peaks, slopes
-
-    @staticmethod
-    def _peak_at(terms: Complex, near: Complex) -> tuple[float, Array]:
-        """Return the peak of |S| of the parabola through three samples of 1 + L, and its slopes (g,)."""
-        u = _closest_to_zero(near)
-        weights = np.array([0.5 * u * (u - 1.0), 1.0 - u**2, 0.5 * u * (u + 1.0)])
-        at = complex(weights @ near)
-        return 1.0 / abs(at), -np.real(at.conjugate() * (terms @ weights)) / abs(at) ** 3
 
     @property
     def uncontrolled_variances(self) -> Array:
         """The variances with all gains at zero, (r,): those on the actuator vanish."""
         on_s, on_t, on_both, _ = self._node_weights
         return np.concatenate([on_s.sum(axis=1), np.zeros(len(on_t)), on_both[::4].sum(axis=1)])
-
-
-def _closest_to_zero(near: np.ndarray) -> float:
-    """Return where in -1 to 1 the complex parabola through three points comes nearest to zero."""
-    b, c = 0.5 * (near[2] - near[0]), 0.5 * (near[2] + near[0]) - near[1]
-    u = 0.0
-    for _ in range(4):
-        z, slope = near[1] + u * (b + u * c), b + 2.0 * u * c
-        curved = abs(slope) ** 2 + 2.0 * (np.conj(z) * c).real
-        if not curved > 0.0:
-            break
-        u = float(np.clip(u - (np.conj(z) * slope).real / curved, -1.0, 1.0))
-    return u
 
 
 def calm_actuator(loop: TransferLoop) -> tuple[float, float]:

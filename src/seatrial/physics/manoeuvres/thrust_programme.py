@@ -13,14 +13,13 @@ from numba import njit
 
 from seatrial.core.values import Array, InputError
 from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE, OPTIONS, kernel
-from seatrial.physics.manoeuvres.programme import SIDES, ZIGZAG_EXECUTES
+from seatrial.physics.manoeuvres.programme import NOT_FINISHED, SIDES, ZIGZAG_EXECUTES
 
 # positions in a helmsman's memory; the table of thrusters follows
 (
     PSI, SURGE, AHEAD, YAW, SWITCHING, COUNT, STAGE, FINISHED, LAST_SURGE, LAST_TIME, THRUSTERS, TABLE,
 ) = range(12)  # fmt: skip
 COLUMNS = 5  # of the table: input, reading at rest, from there to full ahead, shares of ahead and yaw
-NOT_FINISHED = -1.0
 SPIN_TURN = float(np.radians(720.0))
 """Heading change that ends a spin: the second turn is steady; chosen."""
 _SETTLED, _SETTLING_S = 0.005, 5.0

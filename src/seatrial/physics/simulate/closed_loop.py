@@ -8,16 +8,16 @@ from functools import cached_property, reduce
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.values import Array, DivergedError, InputError, Provenance, Record, frozen, spelling_hint
+from seatrial.core.values import Array, InputError, Provenance, Record, frozen, spelling_hint
 from seatrial.numerics.kernels import feedback
-from seatrial.numerics.kernels.feedback import sampled_controller, steer
+from seatrial.numerics.kernels.feedback import sampled_controller
 from seatrial.numerics.kernels.integrate import evaluate
 from seatrial.numerics.kernels.linear import propagators, replay
 from seatrial.physics.loops import Block, TransferLoop
 from seatrial.physics.loops.discrete import difference_equation, holding_terms
 from seatrial.physics.loops.loop import Sampling, controllable_form, held_step, in_series, straight_step
 from seatrial.physics.loops.loop_states import StateSpace
-from seatrial.physics.simulate.replay import record_of, require_bounded
+from seatrial.physics.simulate.replay import commanded, record_of
 
 # The controller of a loop in steps: its own states, discretised exactly for an error that runs straight between them.
 
@@ -142,12 +142,10 @@ def sample_noise(sampling: Sampling, count: int, seed: int) -> Array:
     return sampling.noise * np.random.default_rng([seed, _NOISE_STREAM]).standard_normal(count)
 
 
-def sampled_body(
-    loop: TransferLoop, gains: Array, dt: float, rate: float, noise: Array
-) -> tuple[Array, Mapping[int, float]]:
-    """Return what `sampled_controller` reads behind the head of its memory, and the entries of the head for it.
+def sampled_laws(loop: TransferLoop, gains: Array, dt: float) -> tuple[Array, Mapping[int, float]]:
+    """Return what `sampled_controller` reads of the loop behind the head of its memory, and the head's entries for it.
 
-    rate: of the actuator, per second; noise: of each sample.
+    The last entries are the queue of the dead time; the noise of the samples stands behind it.
     """
     assert loop.sampling is not None
     T, every = loop.sampling.sample_s, steps_a_sample(loop.sampling, dt)
@@ -163,7 +161,6 @@ def sampled_body(
     servo_at = feedback.HEAD_SIZE + len(sensor)
     blocks_at = servo_at + len(servo)
     queue_at = blocks_at + len(blocks)
-    body = np.concatenate([sensor, servo, blocks, np.zeros(queue), noise])
     values = {
         feedback.EVERY: every,
         feedback.SENSOR: feedback.HEAD_SIZE,
@@ -177,9 +174,8 @@ def sampled_body(
         feedback.QUEUE_SIZE: queue,
         feedback.NOISE: queue_at + queue,
         feedback.RESOLUTION: loop.sampling.resolution,
-        feedback.SAMPLE_SLEW: rate * T,
     }
-    return body, values
+    return np.concatenate([sensor, servo, blocks, np.zeros(queue)]), values
 
 
 def _block(block: Block, T: float, gain: float, holds: float) -> Array:
@@ -353,16 +349,9 @@ class ClosedLoop:
                 "more, without gaps"
             )
         memory = self.controller_memory(disturbance, limits, wanted, added, noise)
-        states, inputs = np.empty((count, len(self.start))), np.empty((count, len(self.inputs)))
-        diverged = steer(
-            self.model.compiled.rates, self.command, self.start.copy(), self.inputs.copy(),
-            self.model.parameters.values, memory, self.dt, states, inputs,
-        )  # fmt: skip
-        last = count if diverged < 0 else diverged + 1
-        time = frozen(self.dt * np.arange(last))
-        require_bounded(self.model, time, states[:last], f"loop '{self.loop.name}'")
-        if diverged >= 0:
-            raise DivergedError(f"loop '{self.loop.name}' before model '{self.model.name}' runs away at {time[-1]:g} s")
+        states, _ = commanded(
+            self.model, self.command, memory, self.dt, count, self.start, self.inputs, f"loop '{self.loop.name}'"
+        )
         return states, memory[self._angles(memory, count)]
 
     @property
@@ -387,14 +376,12 @@ class ClosedLoop:
 
         noise: of each sample that a sampled controller takes.
         """
-        count = len(disturbance)
-        if self.loop.sampling is None:
-            n, laws = self._controller_laws
-            body, own = np.concatenate([laws, np.zeros(2 * n)]), {feedback.CONTROLLER_ORDER: float(n)}
-        else:
-            samples = -(-count // steps_a_sample(self.loop.sampling, self.dt))
-            heard = sample_noise(self.loop.sampling, samples, _NOISE_SEED) if noise is None else noise[:samples]
-            body, own = sampled_body(self.loop, self.gains, self.dt, limits.rate, heard)
+        count, sampling = len(disturbance), self.loop.sampling
+        body, own = self._laws
+        if sampling is not None:
+            samples = -(-count // steps_a_sample(sampling, self.dt))
+            heard = sample_noise(sampling, samples, _NOISE_SEED) if noise is None else noise[:samples]
+            body, own = np.concatenate([body, heard]), {**own, feedback.SAMPLE_SLEW: limits.rate * sampling.sample_s}
         place, disturbed = self._input_index(self.actuator), self._input_index(self.disturbance_input)
         values = {
             feedback.COUNT: count,
@@ -418,11 +405,13 @@ class ClosedLoop:
         return np.concatenate([head, body, *series])
 
     @cached_property
-    def _controller_laws(self) -> tuple[int, Array]:
-        """The controller's order and what `linear_controller` reads of it: free, with slow states held, their rate."""
+    def _laws(self) -> tuple[Array, Mapping[int, float]]:
+        """What `command` reads of the loop behind the head, and the head's entries for it, the same in every run."""
+        if self.loop.sampling is not None:
+            return sampled_laws(self.loop, self.gains, self.dt)
         made = controller_state_space(self.loop, self.gains)
-        laws = (made.discretised(self.dt, is_holding=held) for held in (False, True))
-        return len(made.b), np.concatenate([*laws, made.slow_rate])
+        n, laws = len(made.b), (made.discretised(self.dt, is_holding=held) for held in (False, True))
+        return np.concatenate([*laws, made.slow_rate, np.zeros(2 * n)]), {feedback.CONTROLLER_ORDER: float(n)}
 
     def _input_index(self, name: str) -> int:
         """Return the place of an input; -1 of none."""
@@ -450,42 +439,6 @@ class ClosedLoop:
             about = made.channel(self.output)
             made = made.with_channel(REFERENCE, replace(about, values=frozen(reference)))
         return replace(made, provenance=Provenance(f"loop '{self.loop.name}' before model '{self.model.name}'"))
-
-
-def closed_loop(
-    model: Model,
-    loop: TransferLoop,
-    gains: Array,
-    disturbance: Array,
-    dt: float,
-    *,
-    actuator: str,
-    disturbance_input: str,
-    output: str,
-    limits: ActuatorLimits = UNLIMITED,
-    reference: Array | None = None,
-    start: Array | None = None,
-    inputs: Array | None = None,
-    effectiveness: float = 1.0,
-) -> Record:
-    """The loop's controller with gains (g,) before a model, met by a disturbance (n,), following a reference (n,).
-
-    The arguments are those of `ClosedLoop`; see there for signs and trims. Slow terms are held while a limit bites and
-    they would drive further into it (conditional integration; Astrom & Hagglund 1995, PID Controllers, section 3.5).
-
-    Returns:
-        A simulated record: states, inputs, actuator and disturbance at their samples, and ``reference`` where given.
-
-    Raises:
-        InputError: unknown names, wrong lengths, values that are not finite.
-        DivergedError: it runs away.
-    """
-    nothing = np.empty(0)
-    prepared = ClosedLoop(
-        model, loop, np.asarray(gains, dtype=np.float64), dt, actuator, disturbance_input, output,
-        nothing if start is None else start, nothing if inputs is None else inputs, effectiveness,
-    )  # fmt: skip
-    return prepared.record(f"{loop.name} closed", disturbance, limits, reference)
 
 
 def hold_equivalent(series: Array) -> Array:

@@ -10,12 +10,13 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, DivergedError
 from seatrial.numerics.kernels import feedback
 from seatrial.numerics.kernels import station as keeper
-from seatrial.numerics.kernels.feedback import clamp, steer
+from seatrial.numerics.kernels.feedback import clamp
 from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE, OPTIONS, kernel
 from seatrial.physics.loops.loop import Sampling
 from seatrial.physics.models.thrust_orders import OUTSIDE_FORCES
 from seatrial.physics.models.thruster_layout import MIN_LAG, AngleInput, Thruster
 from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop, sample_noise, simulation_step
+from seatrial.physics.simulate.replay import commanded
 
 # A craft that follows a step of heading under proportional-derivative control.
 
@@ -52,12 +53,10 @@ class HeadingStep:
         memory[[_HEADING, _RATE, _ACTUATOR]] = model.states.index("psi"), model.states.index("r"), place
         memory[_SIGN] = -1.0 if model.inputs[place].is_reversed else 1.0
         count = round(self.duration / self.dt)
-        states, given = np.empty((count, len(start))), np.empty((count, len(inputs)))
-        diverged = steer(
-            model.compiled.rates, _follow, start.copy(), inputs.copy(), model.parameters.values, memory, self.dt,
-            states, given,
-        )  # fmt: skip
-        return None if diverged >= 0 else (states, given)
+        try:
+            return commanded(model, _follow, memory, self.dt, count, start, inputs, "a step of heading")
+        except DivergedError:
+            return None
 
 
 @kernel(COMMAND_SIGNATURE, **OPTIONS)
@@ -140,13 +139,10 @@ def follow_track(
     }
     head[list(values)] = list(values.values())
     memory = np.concatenate([memory, head, np.zeros(count)])
-    states, inputs = np.empty((count, len(model.states))), np.empty((count, len(model.inputs)))
-    diverged = steer(
-        model.compiled.rates, feedback.track_follower, closed.start.copy(), closed.inputs.copy(),
-        model.parameters.values, memory, closed.dt, states, inputs,
+    states, _ = commanded(
+        model, feedback.track_follower, memory, closed.dt, count, closed.start, closed.inputs,
+        f"loop '{closed.loop.name}' on a track",
     )  # fmt: skip
-    if diverged >= 0:
-        raise DivergedError(f"loop '{closed.loop.name}' on a track runs away at {diverged * closed.dt:g} s")
     behind = len(memory) - count - feedback.TRACK_HEAD
     begun = int(memory[behind + feedback.NEW_LEG])
     error = memory[len(memory) - count :]
@@ -228,13 +224,8 @@ def keep_station(
     pushes = np.concatenate([drift, forces, sample_noise(controller.sampling, count, seed)[None]])
     memory, series = _memory(model, controller, dt, pushes)
     inputs = np.concatenate([resting, np.zeros(len(OUTSIDE_FORCES))])
-    states, applied = np.empty((count, len(model.states))), np.empty((count, len(inputs)))
-    lost = steer(
-        model.compiled.rates, keeper.station_keeper, np.zeros(len(model.states)), inputs, model.parameters.values,
-        memory, dt, states, applied,
-    )  # fmt: skip
-    if lost >= 0:
-        raise DivergedError(f"the craft leaves its station at {lost * dt:g} s")
+    at_rest = np.zeros(len(model.states))
+    states, _ = commanded(model, keeper.station_keeper, memory, dt, count, at_rest, inputs, "a station")
     rows = memory[series + keeper.DISTURBANCES * count :].reshape(-1, count)
     place = model.states.index
     return StationRun(

@@ -1,6 +1,6 @@
 """A record's inputs run through a model: what the model says the ship would have done."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
 
@@ -22,6 +22,7 @@ from seatrial.core.values import (
 )
 from seatrial.core.values.arrays import Between
 from seatrial.core.values.notation import OPPOSITE, TWIN_DIFFERENCES
+from seatrial.numerics.kernels.feedback import steer
 from seatrial.physics.manoeuvres.recognition import TRUE
 from seatrial.physics.simulate.batch import error_over_range, sufficient_substeps
 from seatrial.physics.simulate.linear import batch_class
@@ -151,6 +152,32 @@ def _diverging_state(states: Array, row: int, bounds: Array) -> int:
     if np.isfinite(here).any() and np.nanmax(here) > 1.0:
         return int(np.nanargmax(here))
     return int(np.argmax(np.abs(states[max(row - 1, 0)]) / bounds))
+
+
+# A command in the loop: it sees the state at the start of each step and sets the inputs until the next.
+
+
+def commanded(
+    model: Model, command: Callable[..., None], memory: Array, dt: float, count: int, start: Array, inputs: Array,
+    subject: str,
+) -> tuple[Array, Array]:  # fmt: skip
+    """Return states (n, nx) and inputs (n, nu) of a model that a command steers for `count` steps of dt [s].
+
+    memory: of the command, which writes in it; start: (nx,); inputs: (nu,), held but for what the command sets.
+
+    Raises:
+        DivergedError: the subject runs away; when, and which state.
+    """
+    states, applied = np.empty((count, len(start))), np.empty((count, len(inputs)))
+    lost = steer(
+        model.compiled.rates, command, start.copy(), inputs.copy(), model.parameters.values, memory, dt, states, applied
+    )
+    last = count if lost < 0 else lost + 1
+    time = frozen(dt * np.arange(last))
+    require_bounded(model, time, states[:last], subject)
+    if lost >= 0:
+        raise DivergedError(f"{subject} with model '{model.name}' runs away at {time[-1]:g} s")
+    return states, applied
 
 
 # A record's inputs run through a model: what the model says the ship would have done.

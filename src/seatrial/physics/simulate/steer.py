@@ -11,7 +11,6 @@ from seatrial.core.equations import Model
 from seatrial.core.equations.model import RUDDER
 from seatrial.core.values import Array, InputError, Provenance, Record, frozen
 from seatrial.core.values.record import MAX_SAMPLES
-from seatrial.numerics.kernels.feedback import steer
 from seatrial.physics.manoeuvres import REACH_PERCENTILE
 from seatrial.physics.manoeuvres.programme import (
     FINISHED,
@@ -21,7 +20,8 @@ from seatrial.physics.manoeuvres.programme import (
     release_angle,
     rudder_angles,
 )
-from seatrial.physics.simulate.replay import record_of, require_bounded, trajectory
+from seatrial.physics.manoeuvres.thrust_programme import ThrustProgramme
+from seatrial.physics.simulate.replay import commanded, record_of, require_bounded, trajectory
 from seatrial.physics.simulate.states import approach_speed, characteristic_time, held_inputs, settled_actuators
 
 # A ship that rolls, let go from an angle: the decay that a model foresees.
@@ -124,7 +124,9 @@ def manoeuvre(
         model.states.index("psi"), model.states.index("r") if "r" in model.states else -1,
         rudder, -1.0 if model.inputs[rudder].is_reversed else 1.0, slew_rate, dt, approach, unit,
     )  # fmt: skip
-    used, finished = _steer_programme(model, programme, steering, start, held, longest)
+    memory = programme.memory(steering)
+    used, _, finished = steer_programme(model, programme, memory, FINISHED, dt, start, held, longest)
+    used[:, rudder] = rudder_angles(used[:, rudder])
     time = frozen(dt * np.arange(len(used)))
     # Record.dt's own quotient, so that a replay takes the same steps to the last bit
     states, outputs = trajectory(model, used, float(time[-1] - time[0]) / (len(time) - 1), start)
@@ -144,29 +146,22 @@ def _require_steerable(model: Model, dt: float, slew_rate: float) -> None:
         raise InputError(f"step {dt:g} s and slew rate {slew_rate:g} rad/s must be positive")
 
 
-def _steer_programme(
-    model: Model, programme: Programme, steering: Steering, start: Array, held: Array, longest: float
-) -> tuple[Array, bool]:
-    """Return inputs at the samples (n, nu), in the model's signs, and whether the helmsman has finished."""
-    dt = steering.dt
+def steer_programme(
+    model: Model, programme: Programme | ThrustProgramme, memory: Array, finished_at: int, dt: float, start: Array,
+    held: Array, longest: float,
+) -> tuple[Array, Array, bool]:  # fmt: skip
+    """Return inputs at the samples (n, nu), the model's signs, the last state (nx,), and whether it has finished.
+
+    finished_at: where the programme's helmsman writes in its memory when he has.
+    """
     if not 1.0 <= longest / dt < MAX_SAMPLES:
         raise InputError(f"a manoeuvre of {longest:g} s is not between 1 and {MAX_SAMPLES:.0e} steps of {dt:g} s")
     count = int(longest / dt) + 1
-    states, inputs = np.empty((count, len(start))), np.empty((count, len(held)))
-    memory = programme.memory(steering)
-    diverged = steer(
-        model.compiled.rates, programme.helmsman, start, held.copy(), model.parameters.values, memory, dt, states,
-        inputs,
-    )  # fmt: skip
-    if diverged >= 0:
-        require_bounded(
-            model, frozen(dt * np.arange(diverged + 1)), states[: diverged + 1], f"manoeuvre '{programme.text}'"
-        )
-    finished = memory[FINISHED] != NOT_FINISHED
-    last = min(count, round(memory[FINISHED] / dt) + 1) if finished else count
-    used = np.ascontiguousarray(inputs[:last])
-    used[:, steering.delta] = rudder_angles(used[:, steering.delta])
-    return used, bool(finished)
+    subject = f"manoeuvre '{programme.text}'"
+    states, inputs = commanded(model, programme.helmsman, memory, dt, count, start, held, subject)
+    finished = memory[finished_at] != NOT_FINISHED
+    last = min(count, round(memory[finished_at] / dt) + 1) if finished else count
+    return np.ascontiguousarray(inputs[:last]), states[last - 1].copy(), bool(finished)
 
 
 # How fast the rudder of a simulated manoeuvre moves: as fast as the runs show it, at least as SOLAS requires.

@@ -9,14 +9,11 @@ from scipy.optimize import brentq
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Provenance, Record, frozen, spelling_hint
-from seatrial.core.values.record import MAX_SAMPLES
-from seatrial.numerics.kernels.feedback import steer
 from seatrial.physics.manoeuvres.programme import Programme, programme
 from seatrial.physics.manoeuvres.thrust_programme import (
     EXAMPLES,
     FINISHED,
     LONGEST_S,
-    NOT_FINISHED,
     ThrustProgramme,
     thrust_programme,
 )
@@ -32,7 +29,7 @@ from seatrial.physics.models.thruster_layout import (
 )
 from seatrial.physics.simulate.replay import record_of, require_bounded, trajectory
 from seatrial.physics.simulate.states import approach_speed, balancing_input, held_inputs, settled_actuators
-from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE, manoeuvre
+from seatrial.physics.simulate.steer import SOLAS_SLEW_RATE, manoeuvre, steer_programme
 
 # Craft that are steered by thrusters taken through a programme: who works how much, and the run that follows.
 
@@ -229,22 +226,9 @@ def _steered(
     model: Model, programme: ThrustProgramme, ahead: float, thrusters: Array, start: Array, held: Array, dt: float,
     longest: float,
 ) -> tuple[Array, Array, bool]:  # fmt: skip
-    """Inputs at the samples (n, nu), the last state (nx,), and whether the programme has finished."""
-    if not 1.0 <= longest / dt < MAX_SAMPLES:
-        raise InputError(f"a manoeuvre of {longest:g} s is not between 1 and {MAX_SAMPLES:.0e} steps of {dt:g} s")
-    count = int(longest / dt) + 1
-    states, inputs = np.empty((count, len(start))), np.empty((count, len(held)))
+    """Return what `steer_programme` does."""
     memory = programme.memory(model.states.index("psi"), model.states.index("u"), ahead, thrusters)
-    lost = steer(
-        model.compiled.rates, programme.helmsman, start, held.copy(), model.parameters.values, memory, dt, states,
-        inputs,
-    )  # fmt: skip
-    if lost >= 0:
-        time = frozen(dt * np.arange(lost + 1))
-        require_bounded(model, time, states[: lost + 1], f"manoeuvre '{programme.text}'")
-    finished = memory[FINISHED] != NOT_FINISHED
-    last = min(count, round(memory[FINISHED] / dt) + 1) if finished else count
-    return np.ascontiguousarray(inputs[:last]), states[last - 1].copy(), bool(finished)
+    return steer_programme(model, programme, memory, FINISHED, dt, start, held, longest)
 
 
 # Manoeuvres of craft with thrusters: by an angle, as ships by their rudder, or by difference of thrust.
