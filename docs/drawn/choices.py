@@ -18,7 +18,7 @@ from seatrial.core.results import Fit
 from seatrial.core.results.online import Snapshot
 from seatrial.core.values import Array
 from seatrial.physics.manoeuvres.programme import programme
-from seatrial.physics.models.shallow_water import SHARE_SPREAD, share_name
+from seatrial.physics.models.published import SHARE_SPREAD, share_name
 from seatrial.physics.simulate import replay
 from seatrial.physics.simulate.steer import manoeuvre
 from seatrial.problems.twin_ships import shallow_water_ship, twin_screw_ship

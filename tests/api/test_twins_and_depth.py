@@ -62,7 +62,7 @@ def test_an_autopilot_is_tuned(ship: ModelFile, tmp_path: Path) -> None:
     write_model(ship, tmp_path / "model.toml")
     made = tune(
         tuning_task(write_loop_file(tmp_path, AUTOPILOT)),
-        effort=Effort(population=20, generations=3, refined=2, fill_rounds=1, neighbours=200),
+        effort=Effort(refined=2, fill_rounds=1, neighbours=200),
     )
     assert made.chosen.Ms < 2.5
 

@@ -2,7 +2,7 @@
 
 from measure_docs import by_hand, count_words, counted, median_words, pages, sentences
 
-MOST_WORDS = 42_000  # written by hand; chosen
+MOST_WORDS = 42_300  # written by hand; chosen
 LONGEST, MEDIAN = 40, 18  # words of a sentence, chosen
 COUNTS = [counted(path) for path in pages()]
 

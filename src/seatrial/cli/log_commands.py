@@ -161,13 +161,7 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
         return f"{first}, seatrial check {in_shell(log)} lists all"
     steps = [f"decide what is OPEN in {out}"] if draft.open_questions or draft.lacks_speed else []
     steps += [f"put the length of the craft after 'L =' in {out} (init --length does)"] if draft.lacks_length else []
-    if draft.lacks_input and (rudder := draft.column_like("delta")):
-        stated = in_shell(f"{rudder}=delta")
-        return (
-            "say which column is a rudder (delta), a thruster (command_1, command_2) or the roll angle (phi): the same "
-            f"command with --overwrite --column {stated}"
-        )
-    if draft.lacks_heading and (heading := draft.column_like("psi")):
+    if draft.lacks_heading and (heading := draft.column_like_heading):
         stated = in_shell(f"{heading}=psi")
         return f"no column is recognised as the heading: if one is, the same command with --overwrite --column {stated}"
     if draft.lacks_manoeuvre:

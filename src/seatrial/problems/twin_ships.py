@@ -18,9 +18,7 @@ from seatrial.physics.hydro.empirical import (
 )
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.mmg import mmg_shallow, mmg_twin
-from seatrial.physics.models.published import kvlcc2_l7
-from seatrial.physics.models.screws import twin_screw_formulas
-from seatrial.physics.models.shallow_water import share_name
+from seatrial.physics.models.published import kvlcc2_l7, share_name, twin_screw_formulas
 from seatrial.physics.simulate.replay import replay
 from seatrial.physics.simulate.states import balancing_input, held_inputs
 from seatrial.physics.simulate.steer import manoeuvre

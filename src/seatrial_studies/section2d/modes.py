@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.core.values import Array, InputError
-from seatrial.physics.hydro.section import MOTIONS, SectionMotion, section_hydrodynamics
+from seatrial.physics.hydro import MOTIONS, SectionMotion, section_hydrodynamics
 from seatrial_studies.section2d.responses import (
     FORM,
     HEAVE_PERIOD,

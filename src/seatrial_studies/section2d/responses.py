@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.check import with_standard_signs
 from seatrial.data.read import ColumnSpec, Layout, read_record
-from seatrial.physics.hydro import group_velocity, wavenumber
-from seatrial.physics.hydro.section import LewisForm
+from seatrial.physics.hydro import LewisForm, group_velocity, wavenumber
 
 # What is documented of the flume, the section and its holding; how the files are laid out.
 

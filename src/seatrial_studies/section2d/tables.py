@@ -6,8 +6,7 @@ import numpy as np
 
 from seatrial.core.results import Curve, Figure, Table
 from seatrial.core.values import Array
-from seatrial.physics.hydro import wavenumber
-from seatrial.physics.hydro.section import haskind_damping
+from seatrial.physics.hydro import haskind_damping, wavenumber
 from seatrial_studies.section2d.analysis import (
     SectionAnalysis,
     clock_table,

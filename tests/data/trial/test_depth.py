@@ -11,8 +11,7 @@ from seatrial.data.trial.load import build_trial_model
 from seatrial.data.trial.records import load_records
 from seatrial.data.trial.schema import ModelTable
 from seatrial.estimation.identify import identify
-from seatrial.physics.models.published import kvlcc2_l7
-from seatrial.physics.models.shallow_water import SHARE_SPREAD, share_name
+from seatrial.physics.models.published import SHARE_SPREAD, kvlcc2_l7, share_name
 from seatrial.problems.twin_ships import shallow_water_ship, shallow_water_trials
 
 

@@ -8,8 +8,8 @@ import pytest
 from seatrial.core.equations import Model
 from seatrial.core.values import Array
 from seatrial.physics.models.mmg import mmg, mmg_shallow
-from seatrial.physics.models.published import kvlcc2, kvlcc2_l7
-from seatrial.physics.models.shallow_water import LEAST_RATIO, SHARE_SPREAD, share_name
+from seatrial.physics.models.published import SHARE_SPREAD, kvlcc2, kvlcc2_l7, share_name
+from seatrial.physics.models.shallow_water import LEAST_RATIO
 
 
 def shallow() -> Model:

@@ -76,8 +76,7 @@ from seatrial.data.trial.plausibility import ESTIMATED
 from seatrial.data.trial.records import need_release
 from seatrial.data.trial.run_data import run_name
 
-# deg, between which an angle lies; ours: a heading from -180 or to 360, rudders that turn to either side
-_ANGLES = {"psi": (-180.0, 360.0), "delta": (-90.0, 90.0)}
+_HEADINGS = (-180.0, 360.0)  # deg, between which a heading lies; ours
 _WIDER_THAN_A_STATE = 6.0  # range of a column, up to which it may number states, such as those of a fix; chosen
 _MIXED = "mixed"  # kind of a run that holds several manoeuvres, or none that is recognised; ours
 _CALM = 0.1  # of the largest range of a run's waves, below which another run lies in calm water; chosen
@@ -140,15 +139,16 @@ class DraftTrial:
         steers = any(symbol == "delta" or symbol.startswith(("command_", "rpm_")) for symbol in symbols)
         return steers and not symbols & {"psi", "psi_magnetic", "q_w"}
 
-    def column_like(self, symbol: str) -> str:
-        """Return the heading of the column that may be an angle which is missing; empty where none may.
+    @property
+    def column_like_heading(self) -> str:
+        """The name of the column that may be the heading where it is missing; empty where none may.
 
         Of those that are not recognised the one of the widest range within what the angle can be, in degrees.
         """
         columns = [
             one for run in self.runs for source in run.sources for topic in source.topics for one in topic.columns
         ]
-        low, high = _ANGLES[symbol]
+        low, high = _HEADINGS
         likely = {
             column.name: column.high - column.low
             for column in columns

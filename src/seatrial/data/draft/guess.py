@@ -29,6 +29,7 @@ from seatrial.physics.models.thruster_layout import CommandInput, Thruster, Thru
 _PAIR_CORRELATION, _PAIR_RATIO = 0.98, 0.05
 _COURSE_ANGLE = math.radians(25.0)  # rad rms between course and heading, up to which ships drift in turns; chosen
 _SURE_T = 5.0  # effect over standard error that proves a rudder; as in the checks
+_FEWEST_WINDOWS = 4  # of smoothing, in which a craft shows what turns it; chosen
 _ANGLE_UNITS = {"deg": math.pi / 180.0, "rad": 1.0}  # rad
 
 
@@ -77,7 +78,7 @@ def columns_of_turning(columns: dict[int, Array], heading: Array, unit: str, dt:
     heading: (n,), in `unit`, deg or rad. The rate comes in either; the rudder is as for a log that has no names.
     """
     length = window_length(len(heading))
-    if length < 3 or not columns:  # samples of a window
+    if not columns or len(heading) < _FEWEST_WINDOWS * length:
         return []
     yaw = smoothed_derivative(np.unwrap(_ANGLE_UNITS[unit] * heading), dt, length)
     smooth = {k: smoothed(values, length) for k, values in columns.items()}
@@ -87,10 +88,9 @@ def columns_of_turning(columns: dict[int, Array], heading: Array, unit: str, dt:
         for k, values in smooth.items()
         if abs(abs(_ratio(size * values, yaw)) - 1.0) < _PAIR_RATIO
     ]
-    rest = {k: values for k, values in smooth.items() if k not in {rate.index for rate in rates}}
     acceleration = smoothed_derivative(yaw, dt, 3)  # samples: it is smooth already
-    shorter = {k: values[1:-1] for k, values in rest.items()}
-    return [*rates, *_rudder(shorter, yaw[1:-1], acceleration, unit)]
+    rest = {k: values[1:-1] for k, values in smooth.items() if k not in {rate.index for rate in rates}}
+    return [*rates, *_rudder(rest, yaw[1:-1], acceleration, unit)]
 
 
 def _ratio(values: Array, rate: Array) -> float:
@@ -424,13 +424,13 @@ def _turning_guesses(survey: LogSurvey, part: Sequence[ColumnGuess], sought: set
         return []
     angles = complete.pop(heading.number)
     unit = psi.unit or ("rad" if np.ptp(angles) <= 2.0 * math.pi else "deg")
-    found = columns_of_turning(dict(sorted(complete.items())), angles, unit, 1.0 / topic.rate)
+    turning = columns_of_turning(dict(sorted(complete.items())), angles, unit, 1.0 / topic.rate)
     return [
         ColumnGuess(
             numbers[column.index], column.symbol, "" if column.symbol == "delta" else column.unit,
             evidence=(column.evidence,), other_reading=_NO_RUDDER if column.symbol == "delta" else "",
         )
-        for column in {column.symbol: column for column in reversed(found)}.values() if column.symbol in sought
+        for column in {column.symbol: column for column in reversed(turning)}.values() if column.symbol in sought
     ]  # fmt: skip
 
 
@@ -569,9 +569,10 @@ def with_turned_thruster(
 
     is_rate_steady: whether the rate is one in all runs; a nozzle behind such a one is taken for a rudder.
     """
-    used = {one.symbol: one for part in parts for one in part if one.is_used}
-    drives = [one for one in used.values() if one.symbol.startswith(("command_", "rpm_"))]
-    rates = [one for part in parts for one in part if one.symbol == "n"]
+    guesses = [guess for part in parts for guess in part]
+    used = {guess.symbol: guess for guess in guesses if guess.is_used}
+    drives = [guess for guess in used.values() if guess.symbol.startswith(("command_", "rpm_"))]
+    rates = [guess for guess in guesses if guess.symbol == "n"]
     steers = used.get("delta")
     is_turned = steers is not None and not steers.is_open and (
         _TURNED.search(str(steers.source))

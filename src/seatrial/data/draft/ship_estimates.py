@@ -26,7 +26,7 @@ from seatrial.physics.hydro.empirical import (
     thrust_coefficient,
 )
 from seatrial.physics.hydro.excitation import SEA_WATER, G
-from seatrial.physics.models.screws import twin_screw_formulas
+from seatrial.physics.models.published import twin_screw_formulas
 
 # What a ship's stated size says of its mass, rudder and propeller: values for a draft, until better ones are known.
 

@@ -12,9 +12,8 @@ from seatrial.data.check.phases import is_free_decay
 from seatrial.data.check.water_speed import SpeedAndCurrent, speed_through_water
 from seatrial.data.draft.ship_estimates import UNSTATED, EstimatedValue, StatedSize, hull_rudder_propeller, wind_areas
 from seatrial.physics.manoeuvres.track import speed
-from seatrial.physics.models.published import SYMMETRIC
+from seatrial.physics.models.published import SHARE_SPREAD, SYMMETRIC, share_name
 from seatrial.physics.models.registry import family_of
-from seatrial.physics.models.shallow_water import SHARE_SPREAD, share_name
 
 # The model with which a drafted trial begins, by what the logs hold and what is stated of the craft.
 

@@ -20,10 +20,23 @@ from seatrial.physics.hydro.empirical import (
     yoshimura,
 )
 from seatrial.physics.hydro.excitation import SEA_WATER
-from seatrial.physics.models.published import PARAMETER_SETS, SYMMETRIC, TYPICAL, TYPICAL_SPREAD, parameter_set
+from seatrial.physics.models.published import (
+    FURUKAWA,
+    HOLTROP,
+    KIJIMA,
+    LI_WU,
+    PARAMETER_SETS,
+    SHARE_SPREAD,
+    SYMMETRIC,
+    TAYLOR,
+    TWIN_SPREAD,
+    TYPICAL,
+    TYPICAL_SPREAD,
+    parameter_set,
+    share_name,
+    twin_screw_formulas,
+)
 from seatrial.physics.models.registry import family_of
-from seatrial.physics.models.screws import HOLTROP, TAYLOR, TWIN_SPREAD, twin_screw_formulas
-from seatrial.physics.models.shallow_water import FURUKAWA, KIJIMA, LI_WU, SHARE_SPREAD, share_name
 
 # Priors by the name of their source: published sets of coefficients, or formulas in the ship's main dimensions.
 

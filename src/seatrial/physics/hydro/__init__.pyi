@@ -15,3 +15,6 @@ from seatrial.physics.hydro.tabulated import excitation_at_speed as excitation_a
 from seatrial.physics.hydro.tabulated import WaveTable as WaveTable
 from seatrial.physics.hydro.tabulated import TabulatedExcitation as TabulatedExcitation
 from seatrial.physics.hydro.tabulated import read_transfer as read_transfer
+from seatrial.physics.hydro.section import MOTIONS as MOTIONS, LewisForm as LewisForm
+from seatrial.physics.hydro.section import SectionMotion as SectionMotion, haskind_damping as haskind_damping
+from seatrial.physics.hydro.section import section_hydrodynamics as section_hydrodynamics

@@ -23,6 +23,7 @@ from seatrial.physics.models.forces import (
     pose_rates,
     wind_force,
 )
+from seatrial.physics.models.published import KIJIMA, LI_WU
 from seatrial.physics.models.roll_coupling import (
     ROLL_TERMS,
     ShipForces,
@@ -34,7 +35,7 @@ from seatrial.physics.models.roll_coupling import (
     wind_on_rolling_ship,
 )
 from seatrial.physics.models.screws import LEE, ShipFlow, hull_coefficient, propelled_by_one, propelled_by_two
-from seatrial.physics.models.shallow_water import DEEP, KIJIMA, LI_WU, depth_factors
+from seatrial.physics.models.shallow_water import DEEP, depth_factors
 
 HULL_X = ("R_0", "X_vv", "X_vr", "X_rr", "X_vvvv")
 HULL_Y = ("Y_v", "Y_r", "Y_vvv", "Y_vvr", "Y_vrr", "Y_rrr")

@@ -19,6 +19,42 @@ differ by that); the moment's is the middle of its typical size, 0.05 to 0.20 (F
 TYPICAL = "Fossen 2021, section 10.1, typical values of craft symmetrical fore and aft"
 
 
+# What formulas say of shallow water, and how far each is trusted.
+
+TANG = "Tang et al. 2020, doi 10.1016/j.oceaneng.2019.106679"
+KIJIMA = f"Kijima et al. 1990, J. Soc. Nav. Archit. Japan 168, shallow water; {TANG}"
+LI_WU = f"Li & Wu 1990, added masses in shallow water; {TANG}"
+FURUKAWA = "Furukawa et al. 2016, doi 10.18451/978-3-939230-38-0_33, resistance; one transcription"
+SHARE_SPREAD = {
+    **dict.fromkeys(("Y_v", "Y_r", "N_v", "N_r", "R_0"), 1.0), **dict.fromkeys(("m_y", "J_z"), 0.5),
+    **dict.fromkeys(("w_P", "t_P", "gamma_R"), 0.5),
+}  # fmt: skip
+"""Standard deviation of each share about 1; chosen: exact flow past elliptic sections gives the tanker KVLCC2 0.6 of
+the change of m_y by Li & Wu at h/d 1.5, half of it at 2 and a fifth at 5, and by slender-body theory Y_v would change
+six times as much as by Kijima."""
+
+
+def share_name(coefficient: str) -> str:
+    """Return the parameter that is the share of a coefficient's published change: ``h_Y_v``."""
+    return f"h_{coefficient}"
+
+
+# What formulas say of the wake and the thrust deduction of two screws.
+
+TAYLOR = "Taylor, as in Harvald 1983, two screws"
+HOLTROP = "Holtrop & Mennen 1982, Int. Shipbuilding Progress 29, 166-170, two screws"
+TWIN_SPREAD = {"w_P0": 0.08, "t_P": 0.05}
+"""Standard deviations of the formulas, 1; chosen: shafts in the open and shafts in bossings differ by twice that."""
+
+
+def twin_screw_formulas(C_b: float, B: float, d: float, D_P: float) -> dict[str, float]:
+    """Return w_P0 and t_P of two screws from block coefficient, breadth, draught and diameter [m]."""
+    # 0.55 C_b - 0.20: Taylor, two screws
+    wake = 0.55 * C_b - 0.20
+    # 0.325 C_b - 0.1885 D / sqrt(B T): Holtrop & Mennen 1982, two screws
+    return {"w_P0": wake, "t_P": 0.325 * C_b - 0.1885 * D_P / (B * d) ** 0.5}
+
+
 # Names and units of the coefficients of heave and pitch, and start values where nothing is known of them.
 
 MASSES = {"a33": "kg", "a35": "kg m", "a55": "kg m^2", "a53": "kg m"}

@@ -289,19 +289,3 @@ def _rudder_coefficients(sheet: Sheet, even: tuple[str, ...]) -> tuple[_RudderIn
         sheet.parameter("l_R_prime", meaning="effective position of the rudder over L", latex=r"\ell'_R"),
     )  # fmt: skip
     return _RudderInteraction(rudder, x_R, t_R, a_H, x_H), in_square
-
-
-# What formulas say of the wake and the thrust deduction of two screws.
-
-TAYLOR = "Taylor, as in Harvald 1983, two screws"
-HOLTROP = "Holtrop & Mennen 1982, Int. Shipbuilding Progress 29, 166-170, two screws"
-TWIN_SPREAD = {"w_P0": 0.08, "t_P": 0.05}
-"""Standard deviations of the formulas, 1; chosen: shafts in the open and shafts in bossings differ by twice that."""
-
-
-def twin_screw_formulas(C_b: float, B: float, d: float, D_P: float) -> dict[str, float]:
-    """Return w_P0 and t_P of two screws from block coefficient, breadth, draught and diameter [m]."""
-    # 0.55 C_b - 0.20: Taylor, two screws
-    wake = 0.55 * C_b - 0.20
-    # 0.325 C_b - 0.1885 D / sqrt(B T): Holtrop & Mennen 1982, two screws
-    return {"w_P0": wake, "t_P": 0.325 * C_b - 0.1885 * D_P / (B * d) ** 0.5}

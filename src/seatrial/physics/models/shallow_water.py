@@ -8,17 +8,13 @@ rudder, Li & Wu for the added masses. Terms of higher order, the force v r of su
 and waves of the ship's own are those of deep water, as no source of their change could be checked.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import sympy as sp
 
 from seatrial.core.equations import Sheet
+from seatrial.physics.models.published import FURUKAWA, KIJIMA, LI_WU, SHARE_SPREAD, share_name
 
-TANG = "Tang et al. 2020, doi 10.1016/j.oceaneng.2019.106679"
-KIJIMA = f"Kijima et al. 1990, J. Soc. Nav. Archit. Japan 168, shallow water; {TANG}"
-LI_WU = f"Li & Wu 1990, added masses in shallow water; {TANG}"
-FURUKAWA = "Furukawa et al. 2016, doi 10.18451/978-3-939230-38-0_33, resistance; one transcription"
 LEAST_RATIO = 1.1
 """Depth over draught down to which the factors change; in less water they stay what they are there; chosen."""
 
@@ -43,19 +39,6 @@ class DepthFactors:
 
 
 DEEP = DepthFactors()
-
-SHARE_SPREAD: Mapping[str, float] = {
-    **dict.fromkeys(("Y_v", "Y_r", "N_v", "N_r", "R_0"), 1.0), **dict.fromkeys(("m_y", "J_z"), 0.5),
-    **dict.fromkeys(("w_P", "t_P", "gamma_R"), 0.5),
-}  # fmt: skip
-"""Standard deviation of each share about 1; chosen: exact flow past elliptic sections gives the tanker KVLCC2 0.6 of
-the change of m_y by Li & Wu at h/d 1.5, half of it at 2 and a fifth at 5, and by slender-body theory Y_v would change
-six times as much as by Kijima."""
-
-
-def share_name(coefficient: str) -> str:
-    """Return the parameter that is the share of a coefficient's published change: ``h_Y_v``."""
-    return f"h_{coefficient}"
 
 
 def depth_factors(sheet: Sheet, L: sp.Symbol, d: sp.Symbol) -> DepthFactors:
