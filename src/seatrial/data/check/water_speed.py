@@ -18,6 +18,8 @@ _SEPARATE = 0.04  # of a speed, up to which its standard error separates a curre
 _ROUND = np.radians(300.0)  # sector of headings on which what a turn does to the craft averages out; chosen
 _SEVERAL = np.radians(120.0)  # sector of headings that are several courses; chosen: a wide zigzag is none
 _CLEAR, _LEAST_CURRENT = 4.0, 0.05  # standard errors and share of the speed from which on there is a current; chosen
+_POWERS = (1, 2)  # of the speed with which resistance grows, that are tried; chosen
+_ALIKE = 1.01  # of the least misfit, up to which another power fits alike: some nats of hundreds of samples; chosen
 _TIMES_S = (0.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0)  # s in which a craft's speed recovers, that are tried; chosen
 
 
@@ -71,36 +73,50 @@ def speed_through_water(records: Sequence[Record]) -> SpeedAndCurrent | None:
     Without positions u and v must be over ground.
 
     The velocity over ground is R(psi) [u, v] + current (Fossen 2021, section 10.3). A propeller that holds the speed U
-    and a hull whose resistance grows with the squares of surge and yaw rate balance at u^2 = U^2 - c r^2 (the surge
-    equation of Yasukawa & Yoshimura 2015, eq. (1), about a steady turn); r^2 acts with a delay of its own, the one of
-    some that fits best. Sway follows the yaw rate and, as it lags behind, its
-    derivative. Standard errors leave out one of eight stretches of the runs at a
-    time.
+    and a hull whose resistance grows with the square of the yaw rate, and with surge or its square, balance at
+    u^k = U^k - c r^2, k 1 or 2 (the surge equation of Yasukawa & Yoshimura 2015, eq. (1), about a steady turn); r^2
+    acts with a delay of its own. Power and delay are those of some that fit best. Sway follows the yaw rate and, as it
+    lags behind, its derivative. Standard errors leave out one of eight stretches of the runs at a time; that of the
+    speed holds what the two powers differ by where they fit alike.
     """
     tracks = [track for record in records if (track := _Track.from_record(record)) is not None]
     if not tracks or sum(len(track.c) for track in tracks) < _FEWEST_ROWS:
         return None
     every = 1 + sum(len(track.c) for track in tracks) // _MOST_ROWS
-    table, target = min(
-        (_linearised(tracks, seconds, every) for seconds in _TIMES_S), key=lambda f: least_squares(*f)[1]
-    )
-    values, errors = jackknife_least_squares(table, target)
+    laws = [
+        min(
+            (_linearised(tracks, seconds, power, every) for seconds in _TIMES_S), key=lambda law: least_squares(*law)[1]
+        )
+        for power in _POWERS
+    ]
+    fits = [least_squares(*law) for law in laws]
+    least = min(misfit for _, misfit in fits)
+    best = next(law for law, (_, misfit) in zip(laws, fits, strict=True) if misfit == least)
+    values, errors = jackknife_least_squares(*best)
+    alike = [solution[_SPEED] for solution, misfit in fits if misfit <= _ALIKE * least]
     return SpeedAndCurrent(
-        float(values[_SPEED]), float(errors[_SPEED]), float(values[0]), float(values[1]),
+        float(values[_SPEED]), float(np.hypot(errors[_SPEED], np.ptp(alike))), float(values[0]), float(values[1]),
         float(np.hypot(*errors[:2]) / np.sqrt(2.0)),
         _sector(np.concatenate([np.arctan2(track.s, track.c) for track in tracks])),
     )  # fmt: skip
 
 
-def _linearised(tracks: Sequence["_Track"], seconds: float, every: int) -> tuple[Array, Array]:
+def _linearised(tracks: Sequence["_Track"], seconds: float, power: int, every: int) -> tuple[Array, Array]:
     """Return features and target of the speed law about its best coefficients (Gauss-Newton)."""
     measured = np.concatenate([track.target(every) for track in tracks])
-    speed, loss = float(np.sqrt(2.0 * np.mean(measured**2))), 0.0
-    for _ in range(_ROUNDS):
-        parts = [track.features(seconds, place, len(tracks), every, speed, loss) for place, track in enumerate(tracks)]
+
+    def about(speed: float, loss: float) -> tuple[Array, Array]:
+        parts = [
+            track.features(seconds, power, place, len(tracks), every, speed, loss) for place, track in enumerate(tracks)
+        ]
         table, known = (np.concatenate([part[i] for part in parts]) for i in range(2))
-        speed, loss = (float(x) for x in least_squares(table, measured - known)[0][_SPEED : _SPEED + 2])
-    return table, measured - known
+        return table, measured - known
+
+    law = about(float(np.sqrt(2.0 * np.mean(measured**2))), 0.0)
+    for _ in range(_ROUNDS):
+        speed, loss = least_squares(*law)[0][_SPEED : _SPEED + 2].tolist()
+        law = about(speed, loss)
+    return law
 
 
 def _sector(headings: Array) -> float:
@@ -141,7 +157,7 @@ class _Track:
         return np.stack([self.north, self.east], axis=1)[::every].ravel()
 
     def features(
-        self, seconds: float, place: int, runs: int, every: int, speed: float, loss: float
+        self, seconds: float, power: int, place: int, runs: int, every: int, speed: float, loss: float
     ) -> tuple[Array, Array]:
         """Return slopes of the velocity over ground by the coefficients, and what it has beside slopes times them.
 
@@ -154,8 +170,8 @@ class _Track:
         kept = np.exp(-self.dt * np.arange(len(c)) / seconds) if seconds else zero
         share = 1.0 - np.exp(-self.dt / seconds) if seconds else 1.0
         turning = lfilter([share], [1.0, share - 1.0], self.rate**2)
-        u = np.sqrt(np.maximum(speed**2 - loss * turning, (_LEAST_SHARE * speed) ** 2))
-        by_speed, by_loss = speed / u, -0.5 * turning / u
+        u = np.maximum(speed**power - loss * turning, (_LEAST_SHARE * speed) ** power) ** (1.0 / power)
+        by_speed, by_loss = (speed / u) ** (power - 1), -turning / power * u ** (1.0 - power)
         beside = u - by_speed * speed - by_loss * loss
         starts = np.zeros((runs, len(c)))
         starts[place] = kept
