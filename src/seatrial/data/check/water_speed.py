@@ -76,8 +76,8 @@ def speed_through_water(records: Sequence[Record]) -> SpeedAndCurrent | None:
     and a hull whose resistance grows with the square of the yaw rate, and with surge or its square, balance at
     u^k = U^k - c r^2, k 1 or 2 (the surge equation of Yasukawa & Yoshimura 2015, eq. (1), about a steady turn); r^2
     acts with a delay of its own. Power and delay are those of some that fit best. Sway follows the yaw rate and, as it
-    lags behind, its derivative. Standard errors leave out one of eight stretches of the runs at a time; that of the
-    speed holds what the two powers differ by where they fit alike.
+    lags behind, its derivative. Where both powers fit alike it is 1, to first order in what a turn does. Standard errors
+    leave out one of eight stretches of the runs at a time.
     """
     tracks = [track for record in records if (track := _Track.from_record(record)) is not None]
     if not tracks or sum(len(track.c) for track in tracks) < _FEWEST_ROWS:
@@ -89,13 +89,11 @@ def speed_through_water(records: Sequence[Record]) -> SpeedAndCurrent | None:
         )
         for power in _POWERS
     ]
-    fits = [least_squares(*law) for law in laws]
-    least = min(misfit for _, misfit in fits)
-    best = next(law for law, (_, misfit) in zip(laws, fits, strict=True) if misfit == least)
+    misfits = [least_squares(*law)[1] for law in laws]
+    best = next(law for law, misfit in zip(laws, misfits, strict=True) if misfit <= _ALIKE * min(misfits))
     values, errors = jackknife_least_squares(*best)
-    alike = [solution[_SPEED] for solution, misfit in fits if misfit <= _ALIKE * least]
     return SpeedAndCurrent(
-        float(values[_SPEED]), float(np.hypot(errors[_SPEED], np.ptp(alike))), float(values[0]), float(values[1]),
+        float(values[_SPEED]), float(errors[_SPEED]), float(values[0]), float(values[1]),
         float(np.hypot(*errors[:2]) / np.sqrt(2.0)),
         _sector(np.concatenate([np.arctan2(track.s, track.c) for track in tracks])),
     )  # fmt: skip
