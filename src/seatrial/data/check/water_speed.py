@@ -76,8 +76,8 @@ def speed_through_water(records: Sequence[Record]) -> SpeedAndCurrent | None:
     and a hull whose resistance grows with the square of the yaw rate, and with surge or its square, balance at
     u^k = U^k - c r^2, k 1 or 2 (the surge equation of Yasukawa & Yoshimura 2015, eq. (1), about a steady turn); r^2
     acts with a delay of its own. Power and delay are those of some that fit best. Sway follows the yaw rate and, as it
-    lags behind, its derivative. Where both powers fit alike it is 1, to first order in what a turn does. Standard errors
-    leave out one of eight stretches of the runs at a time.
+    lags behind, its derivative. Where both powers fit alike it is 1, to first order in what a turn does. Standard
+    errors leave out one of eight stretches of the runs at a time.
     """
     tracks = [track for record in records if (track := _Track.from_record(record)) is not None]
     if not tracks or sum(len(track.c) for track in tracks) < _FEWEST_ROWS:
