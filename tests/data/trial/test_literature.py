@@ -7,7 +7,7 @@ from seatrial.data.trial.model_table import build_trial_model
 from seatrial.data.trial.priors import literature_priors, prior_range_findings
 from seatrial.data.trial.schema import ModelTable
 from seatrial.physics.hydro.empirical import CLARKE, HullForm, clarke, yoshimura
-from seatrial.physics.models.published import kvlcc2_l7
+from seatrial.physics.models.published import HIGHER_ORDER_SPREAD, kvlcc2_l7
 
 TANKER = kvlcc2_l7().ship
 
@@ -62,6 +62,16 @@ def test_a_fixed_value_of_a_source_keeps_its_spread() -> None:
         assert build_trial_model(table(**keys, **own), TANKER).parameters["t_P"].prior is None
 
 
+def test_terms_beyond_the_linear_ones_are_near_zero_without_dimensions_of_the_hull() -> None:
+    keys = {"name": "abkowitz", "priors_from": "higher_order", "free": ["N_d", "N_vvr"], "start": {"U_n": 6.0}}
+    boat = Ship("boat", {"L": 8.0, "m": 3000.0, "x_G": 0.0, "I_z": 12000.0, "rho": 1025.0})
+    parameters = build_trial_model(ModelTable.model_validate(keys), boat).parameters
+    prior, held = parameters["N_vvr"].prior, parameters["X_dd"]
+    assert prior is not None and (prior.mean, prior.standard_deviation) == (0.0, HIGHER_ORDER_SPREAD["N_vvr"])
+    assert parameters["N_d"].prior is None
+    assert not held.free and held.prior is not None, "what is held at zero all the same widens the intervals"
+
+
 def test_later_sources_win() -> None:
     form = HullForm.from_ship(TANKER)
     both = literature_priors(("clarke", "yoshimura"), TANKER, "mmg")
@@ -82,6 +92,7 @@ def test_what_cannot_be_is_refused() -> None:
     for names, model, ship, sentence in (
         (("clark",), "mmg", TANKER, "unknown source 'clark'.*clarke"),
         (("clarke",), "abkowitz", TANKER, "'clarke' gives coefficients of model 'mmg'.*not of 'abkowitz'"),
+        (("higher_order",), "mmg", TANKER, "'higher_order' gives coefficients of model 'abkowitz'.*not of 'mmg'"),
         (("kvlcc2",), "waterjet", TANKER, "'kvlcc2' gives coefficients of model 'mmg'"),
         (("clarke",), "mmg", Ship("s", {"L": 60.0}), "lacks B, d, C_b"),
         (("interaction",), "mmg", Ship("s", {"L": 7.0, "B": 1.2, "d": 0.4, "C_b": 0.8}), "lacks H_R and A_R"),

@@ -136,6 +136,7 @@ def tables_text(
         "[model]",
         f'name = "{model.name}"    # {model.why}',
         *(_prior_lines(model) if model.has_propeller else []),
+        *(['priors_from = ["higher_order"]'] if model.has_derivatives else []),
         *([f"free = [{names}]    # {model.free_reason}"] if model.free else []),
         *_speed_prior_lines(model),
         *(

@@ -12,7 +12,7 @@ from seatrial.data.check.phases import is_free_decay
 from seatrial.data.check.water_speed import SpeedAndCurrent, speed_through_water
 from seatrial.data.draft.ship_estimates import UNSTATED, EstimatedValue, StatedSize, hull_rudder_propeller, wind_areas
 from seatrial.physics.manoeuvres.track import speed
-from seatrial.physics.models.published import SHARE_SPREAD, SYMMETRIC, share_name
+from seatrial.physics.models.published import HIGHER_ORDER_SPREAD, SHARE_SPREAD, SYMMETRIC, share_name
 from seatrial.physics.models.registry import family_of
 
 # The model with which a drafted trial begins, by what the logs hold and what is stated of the craft.
@@ -26,7 +26,7 @@ _STEERED_MOTION = frozenset({"psi", "psi_magnetic", "r", "u", "v", "x0", "y0", "
 # largest rudder angle of one run over that of another, from which on the fall of the gain with it shows; chosen
 _AMPLITUDE_RATIO = 1.3
 _PEAK_PERCENTILE = 95.0  # of the rudder's distance from amidships: its order, not its overshoot; chosen
-_LINEAR_TERMS = ("X_u", "X_rr", "Y_v", "Y_r", "Y_d", "N_v", "N_r", "N_d")  # the smallest set that turns and slows down
+_LINEAR_TERMS = ("X_u", "Y_v", "Y_r", "Y_d", "N_v", "N_r", "N_d")  # those that a ship cannot be without
 # those of the hull that the model itself frees, and what else its formulas know badly
 _MMG_TERMS = (
     "R_0", "X_vv", "X_vr", "X_rr", "X_vvvv", "Y_v", "Y_r", "Y_vvv", "Y_vvr", "Y_vrr", "Y_rrr", "N_v", "N_r", "N_vvv",
@@ -211,8 +211,10 @@ def _steered_model(
             return StartingModel(name, why, free, reason, ("delta",), approach, particulars)
         if is_rate_steady(records):
             why = "forces over drift, yaw rate, rudder; mmg goes farther with a propeller's rate (init --gear)"
-            reason = f"the linear terms{', and the damping of fast turns, as rudder angles differ' if falls else ''}"
-            free = (*_LINEAR_TERMS, "N_rrr") if falls else _LINEAR_TERMS
+            reason = (
+                "the linear terms; the others near 0 by priors as wide as of published ships, as they are not known"
+            )
+            free = (*_LINEAR_TERMS, *HIGHER_ORDER_SPREAD)
             return StartingModel(_SHIP, why, free, reason, ("delta",), approach)
     why = "the simplest with a rudder; 'seatrial models' lists others, 'seatrial models NAME' what one needs"
     reason = "gain, time constant, and the fall of the gain with the rudder angle, which differs between the runs"

@@ -1,6 +1,6 @@
 """The model that a trial chooses, what it needs, and what is filled from where."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -33,6 +33,7 @@ _SOURCES: Mapping[str, tuple[str, ...]] = {
     "mmg": _MMG_SOURCES,
     "mmg_twin": (*_MMG_SOURCES, "twin_screws"),
     "mmg_shallow": (*_MMG_SOURCES, "shallow"),
+    "abkowitz": ("higher_order",),
 }
 _FORM = ("L", "B", "d", "C_b", "D_P", "H_R", "A_R")  # what the formulas take, and the model besides
 _PRIOR_PERCENT = (
@@ -91,7 +92,7 @@ def model_guide(name: str) -> ModelGuide:
     """
     model, sources = model_named(name), _SOURCES.get(name, ())
     priors = literature_priors(sources, _example_ship(), name) if sources else {}
-    needed = _needed(model, priors)
+    needed = _needed(model, priors, has_form=_take_form(sources))
     free = tuple(p.name for p in model.parameters.free)
     return ModelGuide(
         name, model.equations.source, model.input_names,
@@ -106,10 +107,15 @@ def _example_ship() -> Ship:
     return Ship(tanker.name, {name: tanker.particulars[name] for name in _FORM})
 
 
-def _needed(model: Model, priors: Mapping[str, LiteraturePrior]) -> dict[str, str]:
+def _take_form(sources: Sequence[str]) -> bool:
+    """Whether formulas are in the dimensions of hull, propeller and rudder."""
+    return any(name in _MMG_SOURCES for name in sources)
+
+
+def _needed(model: Model, priors: Mapping[str, LiteraturePrior], *, has_form: bool) -> dict[str, str]:
     missing = [p for p in model.parameters if p.name in model.parameters.missing and p.name not in priors]
     words = {p.name: _words(p) for p in missing}
-    form = {name: _MEANINGS[name] for name in _FORM if name in _MEANINGS} if priors else {}
+    form = {name: _MEANINGS[name] for name in _FORM if name in _MEANINGS} if has_form else {}
     return {"L": _MEANINGS["L"]} | form | {name: text for name, text in words.items() if name not in form}
 
 
@@ -133,13 +139,13 @@ def _stated(parameter: Parameter) -> str:
 
 def _trial_tables(model: Model, sources: tuple[str, ...], needed: Mapping[str, str], free: tuple[str, ...]) -> str:
     lines = ["[ship]", 'name = "..."', *(_particular(name, text) for name, text in needed.items())]
-    if sources:
+    if _take_form(sources):
         usual = USUAL_PROPELLER.items()
         lines += [f"# {name} = {value:g}    # of the propeller, where it is known" for name, value in usual]
     lines += ["", "[model]", f'name = "{model.name}"']
-    if sources:
+    lines += [f"priors_from = [{_quoted_list(sources)}]"] if sources else []
+    if _take_form(sources):
         lines += [
-            f"priors_from = [{_quoted_list(sources)}]",
             f"prior_sd_percent = {_PRIOR_PERCENT}    # of coefficients whose scatter is not known",
             f"free = [{_quoted_list((*free, *_INTERACTION))}]",
         ]

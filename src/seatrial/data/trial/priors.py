@@ -1,8 +1,9 @@
 """Priors by their source: published coefficients, formulas, an earlier result of the same ship."""
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
@@ -23,6 +24,8 @@ from seatrial.physics.hydro.excitation import SEA_WATER
 from seatrial.physics.models.published import (
     FURUKAWA,
     HOLTROP,
+    HIGHER_ORDER,
+    HIGHER_ORDER_SPREAD,
     KIJIMA,
     LI_WU,
     PARAMETER_SETS,
@@ -53,58 +56,83 @@ class LiteraturePrior:
     deviation: float = 0.0
 
 
-def _interaction(form: HullForm, ship: Ship) -> EmpiricalEstimate:
+def _interaction(ship: Ship) -> EmpiricalEstimate:
     missing = [n for n in ("H_R", "A_R") if n not in ship.particulars]
     if missing:
         raise InputError(
             f"ship '{ship.name}' lacks {' and '.join(missing)} for priors_from = \"interaction\"; add it under [ship]"
         )
-    return interaction_coefficients(form, ship.particulars["H_R"] ** 2 / ship.particulars["A_R"])
+    return interaction_coefficients(HullForm.from_ship(ship), ship.particulars["H_R"] ** 2 / ship.particulars["A_R"])
 
 
-def _propulsion(form: HullForm, ship: Ship) -> EmpiricalEstimate:
+def _propulsion(ship: Ship) -> EmpiricalEstimate:
     stated = {name: ship.particulars.get(name, usual) for name, usual in USUAL_PROPELLER.items()}
+    form = HullForm.from_ship(ship)
     return propulsion(form, stated["pitch_ratio"], stated["area_ratio"], round(stated["blades"]))
 
 
-def _twin_screws(form: HullForm, ship: Ship) -> EmpiricalEstimate:
+def _twin_screws(ship: Ship) -> EmpiricalEstimate:
     if "D_P" not in ship.particulars:
         raise InputError(f"ship '{ship.name}' lacks D_P for priors_from = \"twin_screws\"; add it under [ship]")
+    form = HullForm.from_ship(ship)
     values = twin_screw_formulas(form.C_b, form.B, form.d, ship.particulars["D_P"])
     return EmpiricalEstimate(
         values, f"w_P0 {TAYLOR}; t_P {HOLTROP}", valid=True, limits="any ship with two screws", deviations=TWIN_SPREAD
     )
 
 
-def _displacement(form: HullForm, ship: Ship) -> EmpiricalEstimate:
-    return displacement(form, ship.particulars.get("rho", SEA_WATER))
+def _displacement(ship: Ship) -> EmpiricalEstimate:
+    return displacement(HullForm.from_ship(ship), ship.particulars.get("rho", SEA_WATER))
 
 
-FORMULAS: dict[str, Callable[[HullForm, Ship], EmpiricalEstimate]] = {
-    "clarke": lambda form, _: clarke(form),
-    "kijima": lambda form, _: kijima(form),
-    "yoshimura": lambda form, _: yoshimura(form),
-    "zhou": lambda form, _: added_mass(form),
-    "interaction": _interaction,
-    "propulsion": _propulsion,
-    "displacement": _displacement,
-    "twin_screws": _twin_screws,
-    "shallow": lambda form, _: EmpiricalEstimate(
-        {**dict.fromkeys(map(share_name, SHARE_SPREAD), 1.0), "C_b": form.C_b},
-        f"{KIJIMA}; {LI_WU}; {FURUKAWA}; spread chosen",
-        valid=True,
-        limits="any ship",
-        deviations={share_name(name): sd for name, sd in SHARE_SPREAD.items()},
+def _shallow(ship: Ship) -> EmpiricalEstimate:
+    shares = {share_name(name): sd for name, sd in SHARE_SPREAD.items()}
+    values = {**dict.fromkeys(shares, 1.0), "C_b": HullForm.from_ship(ship).C_b}
+    source = f"{KIJIMA}; {LI_WU}; {FURUKAWA}; spread chosen"
+    return EmpiricalEstimate(values, source, valid=True, limits="any ship", deviations=shares)
+
+
+@dataclass(frozen=True)
+class Formula:
+    """Formulas that say of a ship what coefficients of a model are likely.
+
+    Attributes:
+        estimate: ship -> coefficients, how far they may be wrong, and whether the ship is within their range.
+        model: whose prime system they are in; its family takes them.
+    """
+
+    estimate: Callable[[Ship], EmpiricalEstimate]
+    model: str = "mmg"
+
+
+def _of_form(formula: Callable[[HullForm], EmpiricalEstimate]) -> Formula:
+    return Formula(lambda ship: formula(HullForm.from_ship(ship)))
+
+
+FORMULAS: Mapping[str, Formula] = MappingProxyType({
+    "clarke": _of_form(clarke),
+    "kijima": _of_form(kijima),
+    "yoshimura": _of_form(yoshimura),
+    "zhou": _of_form(added_mass),
+    "interaction": Formula(_interaction),
+    "propulsion": Formula(_propulsion),
+    "displacement": Formula(_displacement),
+    "twin_screws": Formula(_twin_screws),
+    "shallow": Formula(_shallow),
+    "wind": Formula(lambda _: EmpiricalEstimate(SYMMETRIC, TYPICAL, True, "any craft", TYPICAL_SPREAD)),
+    "higher_order": Formula(
+        lambda _: EmpiricalEstimate(
+            dict.fromkeys(HIGHER_ORDER_SPREAD, 0.0), HIGHER_ORDER, True, "any ship", HIGHER_ORDER_SPREAD
+        ),
+        "abkowitz",
     ),
-    "wind": lambda _, __: EmpiricalEstimate(SYMMETRIC, TYPICAL, True, "any craft", TYPICAL_SPREAD),
-}
-_FORMULA_MODEL = "mmg"
+})  # fmt: skip
 
 
 def literature_priors(names: Sequence[str], ship: Ship, model: str) -> dict[str, LiteraturePrior]:
     """Means and citations by parameter; where two sources name a parameter the later one wins.
 
-    Formulas are for the model mmg; published sets are for the model they were made for. Models of its family take both.
+    Formulas and published sets are for the model they were made for. Models of its family take both.
 
     Raises:
         InputError: an unknown source, one for another model, or a ship without the particulars a formula needs.
@@ -113,7 +141,7 @@ def literature_priors(names: Sequence[str], ship: Ship, model: str) -> dict[str,
     for source_name in names:
         _require_source_for_model(source_name, model)
         if source_name in FORMULAS:
-            estimate = FORMULAS[source_name](HullForm.from_ship(ship), ship)
+            estimate = FORMULAS[source_name].estimate(ship)
             values, source, deviations = estimate.values, estimate.source, estimate.deviations
         else:
             published = parameter_set(source_name)
@@ -130,7 +158,7 @@ def _require_source_for_model(name: str, model: str) -> None:
         raise InputError(
             f"model.priors_from: unknown source '{name}'{spelling_hint(name, sources)}; known: {', '.join(sources)}"
         )
-    source_model = _FORMULA_MODEL if name in FORMULAS else parameter_set(name).model
+    source_model = FORMULAS[name].model if name in FORMULAS else parameter_set(name).model
     if family_of(model) != source_model:
         raise InputError(
             f"model.priors_from: '{name}' gives coefficients of model '{source_model}', in its prime system, not of "
@@ -143,9 +171,9 @@ def prior_range_findings(names: Sequence[str], ship: Ship) -> tuple[Finding, ...
     findings = []
     for name in names:
         if name in FORMULAS:
-            form = HullForm.from_ship(ship)
-            estimate = FORMULAS[name](form, ship)
+            estimate = FORMULAS[name].estimate(ship)
             if not estimate.valid:
+                form = HullForm.from_ship(ship)
                 form_text = f"C_b {form.C_b:.3g}, L/B {form.L / form.B:.3g}, B/d {form.B / form.d:.3g}"
                 findings.append(Finding(
                     Severity.WARNING, "prior-range",

@@ -55,6 +55,21 @@ def twin_screw_formulas(C_b: float, B: float, d: float, D_P: float) -> dict[str,
     return {"w_P0": wake, "t_P": 0.325 * C_b - 0.1885 * D_P / (B * d) ** 0.5}
 
 
+# How large the terms beyond the linear ones of an expansion in the motions are, of a ship of which nothing is known.
+
+HIGHER_ORDER_SPREAD = {
+    "X_uu": 0.003, "X_vv": 0.012, "X_vr": 0.017, "X_rr": 0.002, "X_dd": 0.004,
+    "Y_vvv": 0.2, "Y_vvr": 0.18, "Y_vrr": 0.06, "Y_rrr": 0.003,
+    "N_vvv": 0.02, "N_vvr": 0.08, "N_vrr": 0.005, "N_rrr": 0.003,
+}  # fmt: skip
+"""Standard deviations about 0, primes of rho/2 L^2 and rho/2 L^3: twice the root mean square of the three ships; chosen
+for X_uu, X_rr and X_dd, which hold the resistance, the place of G and the rudder of small craft, to be wider."""
+HIGHER_ORDER = (
+    "as large as of a Mariner (Chislett & Stroem-Tejsen 1965, Hy-6), KVLCC2 (Yasukawa & Yoshimura 2015) and S175 "
+    "(Son & Nomoto 1981)"
+)
+
+
 # Names and units of the coefficients of heave and pitch, and start values where nothing is known of them.
 
 MASSES = {"a33": "kg", "a35": "kg m", "a55": "kg m^2", "a53": "kg m"}
