@@ -212,7 +212,7 @@ def _steered_model(
         if is_rate_steady(records):
             why = "forces over drift, yaw rate, rudder; mmg goes farther with a propeller's rate (init --gear)"
             reason = (
-                "the linear terms; the others near 0 by priors as wide as of published ships, as they are not known"
+                "the linear terms; the others near 0, by priors as wide as of published ships"
             )
             free = (*_LINEAR_TERMS, *HIGHER_ORDER_SPREAD)
             return StartingModel(_SHIP, why, free, reason, ("delta",), approach)

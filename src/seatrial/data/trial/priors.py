@@ -23,9 +23,9 @@ from seatrial.physics.hydro.empirical import (
 from seatrial.physics.hydro.excitation import SEA_WATER
 from seatrial.physics.models.published import (
     FURUKAWA,
-    HOLTROP,
     HIGHER_ORDER,
     HIGHER_ORDER_SPREAD,
+    HOLTROP,
     KIJIMA,
     LI_WU,
     PARAMETER_SETS,
