@@ -94,6 +94,15 @@ def test_marked_values_are_a_warning_and_carry_their_source(tmp_path: Path) -> N
     assert not trial.model.parameters["rho"].source.startswith(NOT_MEASURED)
 
 
+def test_what_a_mark_says_that_a_value_is_within_is_its_standard_deviation(tmp_path: Path) -> None:
+    text = SHIP.replace(f"{ESTIMATED}: kg, of", f"{ESTIMATED}: within 35 %, kg, of")
+    parameters = load_trial(written(tmp_path, text)).model.parameters
+    prior = parameters["m"].prior
+    assert prior is not None and prior.standard_deviation == pytest.approx(0.35 * 1.5e6)
+    assert parameters["m"].source == f"{NOT_MEASURED}: kg, of a hull with L/B 6"
+    assert parameters["I_z"].prior is None and not parameters["m"].free
+
+
 def test_of_thrusters_the_marked_lever_alone_is_named(tmp_path: Path) -> None:
     trial = load_trial(written(tmp_path, CATAMARAN))
     (finding,) = [f for f in trial.findings if f.code == ESTIMATED_VALUES]

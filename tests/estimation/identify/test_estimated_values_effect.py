@@ -146,5 +146,10 @@ def test_of_an_open_sign_no_share_is_given() -> None:
 
 def test_levers_of_thrusters_are_wrong_together() -> None:
     """Both are estimated from one breadth: a lever of one side alone that is off makes the craft pull to a side."""
-    assert _wrong_together(["m", "y_port", "y_starboard"]) == [["y_port", "y_starboard"], ["m"]]
-    assert _wrong_together(["m", "rho"]) == [["m"], ["rho"]]
+    together = {"y_port and y_starboard": ["y_port", "y_starboard"], "m": ["m"]}
+    assert _wrong_together(["m", "y_port", "y_starboard"]) == together
+
+
+def test_what_is_estimated_from_the_form_of_a_hull_is_wrong_with_its_mass_and_by_itself() -> None:
+    assert _wrong_together(["m", "I_z", "rho"]) == {"m": ["m", "I_z"], "I_z": ["I_z"], "rho": ["rho"]}
+    assert _wrong_together(["I_z"]) == {"I_z": ["I_z"]}

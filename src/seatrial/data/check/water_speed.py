@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -11,15 +12,12 @@ from seatrial.data.check.motion import jackknife_least_squares, least_squares, s
 _SMOOTHING_S = 3.0  # s over which velocities and yaw rate are smoothed; chosen: short against a turn
 _FEWEST_ROWS = 60  # of all runs together, for a fit of some eight coefficients; chosen
 _MOST_ROWS = 6000  # of all runs together that are fitted; chosen: some tenths of a second
-_ROUNDS = 6  # of Gauss and Newton for one coefficient that is not linear; chosen
-_LEAST_SHARE = 0.2  # of its speed that a craft keeps in any turn; chosen
 _SPEED = 2  # place of the speed among the coefficients
 _SEPARATE = 0.04  # of a speed, up to which its standard error separates a current from it; chosen
 _ROUND = np.radians(300.0)  # sector of headings on which what a turn does to the craft averages out; chosen
 _SEVERAL = np.radians(120.0)  # sector of headings that are several courses; chosen: a wide zigzag is none
 _CLEAR, _LEAST_CURRENT = 4.0, 0.05  # standard errors and share of the speed from which on there is a current; chosen
-_POWERS = (1, 2)  # of the speed with which resistance grows, that are tried; chosen
-_ALIKE = 1.01  # of the least misfit, up to which another power fits alike: some nats of hundreds of samples; chosen
+_MEANS_S = (0.0, 6.0, 12.0, 24.0)  # s over which the yaw rate is taken, that are tried: waves yaw too; chosen
 _TIMES_S = (0.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0)  # s in which a craft's speed recovers, that are tried; chosen
 
 
@@ -73,25 +71,20 @@ def speed_through_water(records: Sequence[Record]) -> SpeedAndCurrent | None:
     Without positions u and v must be over ground.
 
     The velocity over ground is R(psi) [u, v] + current (Fossen 2021, section 10.3). A propeller that holds the speed U
-    and a hull whose resistance grows with the square of the yaw rate, and with surge or its square, balance at
-    u^k = U^k - c r^2, k 1 or 2 (the surge equation of Yasukawa & Yoshimura 2015, eq. (1), about a steady turn); r^2
-    acts with a delay of its own. Power and delay are those of some that fit best. Sway follows the yaw rate and, as it
-    lags behind, its derivative. Where both powers fit alike it is 1, to first order in what a turn does. Standard
-    errors leave out one of eight stretches of the runs at a time.
+    and a hull whose resistance grows with the square of the yaw rate balance at u = U - c r^2 + e r^4, to second order
+    in what a turn does (the surge equation of Yasukawa & Yoshimura 2015, eq. (1), about a steady turn); r^2 acts with a
+    delay of its own. Sway follows the yaw rate and, as it lags behind, its derivative. The delay, and the time over
+    which a yaw rate is the craft's and not of waves, are those of some that fit best. Standard errors leave out one of
+    eight stretches of the runs at a time.
     """
     tracks = [track for record in records if (track := _Track.from_record(record)) is not None]
     if not tracks or sum(len(track.c) for track in tracks) < _FEWEST_ROWS:
         return None
     every = 1 + sum(len(track.c) for track in tracks) // _MOST_ROWS
-    laws = [
-        min(
-            (_linearised(tracks, seconds, power, every) for seconds in _TIMES_S), key=lambda law: least_squares(*law)[1]
-        )
-        for power in _POWERS
-    ]
-    misfits = [least_squares(*law)[1] for law in laws]
-    best = next(law for law, misfit in zip(laws, misfits, strict=True) if misfit <= _ALIKE * min(misfits))
-    values, errors = jackknife_least_squares(*best)
+    target = np.concatenate([track.target(every) for track in tracks])
+    tables = (_features(tracks, seconds, mean, every) for seconds, mean in product(_TIMES_S, _MEANS_S))
+    best = min(tables, key=lambda table: least_squares(table, target)[1])
+    values, errors = jackknife_least_squares(best, target)
     return SpeedAndCurrent(
         float(values[_SPEED]), float(errors[_SPEED]), float(values[0]), float(values[1]),
         float(np.hypot(*errors[:2]) / np.sqrt(2.0)),
@@ -99,22 +92,10 @@ def speed_through_water(records: Sequence[Record]) -> SpeedAndCurrent | None:
     )  # fmt: skip
 
 
-def _linearised(tracks: Sequence["_Track"], seconds: float, power: int, every: int) -> tuple[Array, Array]:
-    """Return features and target of the speed law about its best coefficients (Gauss-Newton)."""
-    measured = np.concatenate([track.target(every) for track in tracks])
-
-    def about(speed: float, loss: float) -> tuple[Array, Array]:
-        parts = [
-            track.features(seconds, power, place, len(tracks), every, speed, loss) for place, track in enumerate(tracks)
-        ]
-        table, known = (np.concatenate([part[i] for part in parts]) for i in range(2))
-        return table, measured - known
-
-    law = about(float(np.sqrt(2.0 * np.mean(measured**2))), 0.0)
-    for _ in range(_ROUNDS):
-        speed, loss = least_squares(*law)[0][_SPEED : _SPEED + 2].tolist()
-        law = about(speed, loss)
-    return law
+def _features(tracks: Sequence["_Track"], seconds: float, mean: float, every: int) -> Array:
+    return np.concatenate(
+        [track.features(seconds, mean, place, len(tracks), every) for place, track in enumerate(tracks)]
+    )
 
 
 def _sector(headings: Array) -> float:
@@ -154,27 +135,23 @@ class _Track:
     def target(self, every: int) -> Array:
         return np.stack([self.north, self.east], axis=1)[::every].ravel()
 
-    def features(
-        self, seconds: float, power: int, place: int, runs: int, every: int, speed: float, loss: float
-    ) -> tuple[Array, Array]:
-        """Return slopes of the velocity over ground by the coefficients, and what it has beside slopes times them.
+    def features(self, seconds: float, mean: float, place: int, runs: int, every: int) -> Array:
+        """Return slopes of the velocity over ground by the coefficients.
 
-        Coefficients: current north and east, speed U, loss c, two of sway, and for each run its speed at its start
-        over U.
+        Coefficients: current north and east, speed U, losses by r^2 and r^4, two of sway, and for each run its speed at
+        its start over U. seconds: in which speed recovers; mean: over which the yaw rate is taken.
         """
-        c, s, one, zero = self.c, self.s, np.ones(len(self.c)), np.zeros(len(self.c))
+        from scipy.ndimage import uniform_filter1d
         from scipy.signal import lfilter
 
-        kept = np.exp(-self.dt * np.arange(len(c)) / seconds) if seconds else zero
+        c, s, one, zero = self.c, self.s, np.ones(len(self.c)), np.zeros(len(self.c))
+        rate = uniform_filter1d(self.rate, round(mean / self.dt) | 1, mode="nearest")
         share = 1.0 - np.exp(-self.dt / seconds) if seconds else 1.0
-        turning = lfilter([share], [1.0, share - 1.0], self.rate**2)
-        u = np.maximum(speed**power - loss * turning, (_LEAST_SHARE * speed) ** power) ** (1.0 / power)
-        by_speed, by_loss = (speed / u) ** (power - 1), -turning / power * u ** (1.0 - power)
-        beside = u - by_speed * speed - by_loss * loss
+        turning = lfilter([share], [1.0, share - 1.0], rate**2)
         starts = np.zeros((runs, len(c)))
-        starts[place] = kept
-        change = np.gradient(self.rate, self.dt)
-        north = [one, zero, c * by_speed, c * by_loss, -s * self.rate, -s * change, *(c * starts)]
-        east = [zero, one, s * by_speed, s * by_loss, c * self.rate, c * change, *(s * starts)]
-        table = np.array([north, east]).transpose(2, 0, 1)[::every].reshape(-1, len(north))
-        return table, np.stack([c * beside, s * beside], axis=1)[::every].ravel()
+        starts[place] = np.exp(-self.dt * np.arange(len(c)) / seconds) if seconds else zero
+        change = np.gradient(rate, self.dt)
+        surge = [one, turning, turning**2]
+        north = [one, zero, *(c * part for part in surge), -s * rate, -s * change, *(c * starts)]
+        east = [zero, one, *(s * part for part in surge), c * rate, c * change, *(s * starts)]
+        return np.array([north, east]).transpose(2, 0, 1)[::every].reshape(-1, len(north))

@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
@@ -16,6 +16,7 @@ from seatrial.data.draft.column_guess import ColumnGuess
 from seatrial.data.draft.held_out import NOTHING_HELD_OUT, HeldOutRuns
 from seatrial.data.draft.naming import columns_not_needed, not_needed_text
 from seatrial.data.draft.ship_estimates import (
+    BREADTH_ERROR,
     EstimatedValue,
     StatedSize,
     added_masses,
@@ -46,6 +47,9 @@ def quoted(value: str | int) -> str:
 
 # Parsons 2003, Parametric design, in Lamb (ed.), Ship Design and Construction, vol. 1, SNAME, ch. 11
 _SOURCE = "Parsons 2003"
+# standard deviations over the value, of heave and of pitch: of a waterplane whose coefficient is right within 0.05
+# (D'Arcangelo 1969, in Parsons 2003)
+_STIFFNESS_ERRORS = (0.1, 0.2)
 ASSUMED = "ASSUMED"
 """Mark of a line of a draft that holds what is usual, not what a log shows."""
 
@@ -60,14 +64,16 @@ def ship_in_waves(size: StatedSize) -> tuple[EstimatedValue, ...]:
     weight = size.density * G
     water = f"in water of {size.density:g} kg/m^3" if size.rho else "in sea water"
     text = f"{water}, of a waterplane with C_WP {fullness:.2f} ({_SOURCE})"
+    pitch_stiffness = weight * pitch * form.B * form.L**3
+    heave_error, pitch_error = (math.hypot(error, 0.0 if size.beam else BREADTH_ERROR) for error in _STIFFNESS_ERRORS)
     return (
         *main_dimensions(size),
         mass["m"],
-        EstimatedValue("I5", mass["I_z"].value, "kg m^2, in pitch, gyradius L/4"),
-        EstimatedValue("c33", weight * fullness * form.L * form.B, f"N/m, heave by heave, {text}"),
+        replace(mass["I_z"], key="I5", text="kg m^2, in pitch, gyradius L/4"),
+        EstimatedValue("c33", weight * fullness * form.L * form.B, f"N/m, heave by heave, {text}", error=heave_error),
         EstimatedValue("c35", 0.0, "N/rad, heave by pitch; 0 of a waterplane alike fore and aft"),
         EstimatedValue("c53", 0.0, "N m/m, pitch by heave; equal to c35"),
-        EstimatedValue("c55", weight * pitch * form.B * form.L**3, f"N m/rad, pitch by pitch, {text}"),
+        EstimatedValue("c55", pitch_stiffness, f"N m/rad, pitch by pitch, {text}", error=pitch_error),
     )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from seatrial.core.text.numbers import percent
 from seatrial.core.values import InputError, si_unit
 from seatrial.core.values.notation import UNIT_WORDS
 from seatrial.data.draft.column_guess import ColumnGuess
@@ -43,6 +44,16 @@ _FASTEST = 0.4  # Froude number beyond which a hull no longer displaces its way 
 # areas above water over B^2 and L^2; chosen: laden tankers have 0.6 and 0.06, ferries 1 and 0.14
 _FRONTAL, _LATERAL = 0.8, 0.1
 _DIGITS = 4  # significant ones of an estimate; those of sea water
+# Standard deviations over the value, of what is estimated; chosen, but for those with a source.
+_USUAL_ERROR = 0.1
+# of a mass by what is stated: length; length and breadth; length, breadth and draught. L/B is within a sixth, B/d
+# within a fifth, C_b within 0.08
+_MASS_ERRORS = (0.35, 0.25, 0.12)
+_INERTIA_ERROR = 0.16  # gyradii of ships are 0.25 L within 0.02 L (ITTC 7.5-02-07-02.1 takes 0.25 L)
+_ADDED_MASS_ERRORS = (0.3, 0.15)  # of a form by rules; of one that is stated, as Zhou's regression scatters
+BREADTH_ERROR, _DRAUGHT_ERROR = 0.17, 0.25
+"""Of dimensions by the length."""
+_WATER_ERROR = 0.025  # between fresh and salt
 _STATED_UNITS = {
     "length": "m", "beam": "m", "draught": "m", "mass": "kg", "gear": "turns", "rho": "kg/m^3",
     "scale": "model lengths", "propeller": "m", "rudder": "m^2",
@@ -137,28 +148,35 @@ UNSTATED = StatedSize()
 
 @dataclass(frozen=True)
 class EstimatedValue:
-    """One value of a draft: key, number, unit and meaning, and how it was estimated, unless it was stated."""
+    """One value of a draft: key, number, unit and meaning, and how it was estimated, unless it was stated.
+
+    error: standard deviation of an estimate over the value.
+    """
 
     key: str
     value: float
     text: str
     is_stated: bool = False
+    error: float = _USUAL_ERROR
 
     @property
     def line(self) -> str:
         """The line of the trial file."""
         number = _as_float(f"{self.value:.12g}" if self.is_stated else f"{self.value:.{_DIGITS}g}")
-        return f"{self.key} = {number}    # {'' if self.is_stated else f'{ESTIMATED}: '}{self.text}"
+        within = f"within {percent(self.error)} %, " if self.value else ""
+        return f"{self.key} = {number}    # {'' if self.is_stated else f'{ESTIMATED}: {within}'}{self.text}"
 
 
 def main_dimensions(size: StatedSize) -> tuple[EstimatedValue, ...]:
     """Return breadth and draught [m]."""
     origin = "from length and mass" if size.mass else "from the length"
     form = size.form
-    values = (("B", size.beam, form.B, "breadth"), ("d", size.draught, form.d, "draught"))
+    values = (
+        ("B", size.beam, form.B, "breadth", BREADTH_ERROR), ("d", size.draught, form.d, "draught", _DRAUGHT_ERROR),
+    )  # fmt: skip
     return tuple(
-        EstimatedValue(key, given or rule, f"m, {name}, {'as stated' if given else origin}", bool(given))
-        for key, given, rule, name in values
+        EstimatedValue(key, given or rule, f"m, {name}, {'as stated' if given else origin}", bool(given), error)
+        for key, given, rule, name, error in values
     )
 
 
@@ -173,14 +191,21 @@ def stated_values(size: StatedSize) -> tuple[EstimatedValue, ...]:
     return tuple(one for one in (*values, water_density(size)) if one.is_stated)
 
 
+def _known_dimensions(size: StatedSize) -> int:
+    """How many of breadth and draught are stated."""
+    return bool(size.beam) + bool(size.draught)
+
+
 def mass_properties(size: StatedSize) -> tuple[EstimatedValue, ...]:
     """Return mass, centre of gravity, inertia [SI] and water density of a ship of this size."""
     values = displacement(size.form, size.density).values
     text = f"kg, of a hull with {size.rules}; write the displacement if you know it (init --mass)"
     return (
-        EstimatedValue("m", size.mass or values["m"], "kg, as stated" if size.mass else text, bool(size.mass)),
+        EstimatedValue("m", size.mass, "kg, as stated", is_stated=True)
+        if size.mass
+        else EstimatedValue("m", values["m"], text, error=_MASS_ERRORS[_known_dimensions(size)]),
         EstimatedValue("x_G", values["x_G"], "m forward of midship"),
-        EstimatedValue("I_z", values["I_z"], "kg m^2, gyradius L/4 (Yasukawa & Yoshimura 2015)"),
+        EstimatedValue("I_z", values["I_z"], "kg m^2, gyradius L/4 (Yasukawa & Yoshimura 2015)", error=_INERTIA_ERROR),
         water_density(size),
     )
 
@@ -197,7 +222,8 @@ def water_density(size: StatedSize) -> EstimatedValue:
     """Return the density of the water [kg/m^3]: of sea water where it is not stated."""
     if size.rho:
         return EstimatedValue("rho", size.rho, "kg/m^3, as stated", is_stated=True)
-    return EstimatedValue("rho", SEA_WATER, "kg/m^3, sea water; fresh water has 1000 (init --rho)")
+    text = "kg/m^3, sea water; fresh water has 1000 (init --rho)"
+    return EstimatedValue("rho", SEA_WATER, text, error=_WATER_ERROR)
 
 
 def added_masses(size: StatedSize) -> tuple[EstimatedValue, ...]:
@@ -207,7 +233,10 @@ def added_masses(size: StatedSize) -> tuple[EstimatedValue, ...]:
     names = {"X_udot": "m_x_prime", "Y_vdot": "m_y_prime", "N_rdot": "J_z_prime"}
     outside = "" if estimate.valid else ", which this form is not"
     text = f"{ZHOU}, for {estimate.limits}{outside}; of other forms a guess"
-    return tuple(EstimatedValue(key, -estimate.values[one] * form.d / form.L, text) for key, one in names.items())
+    error = _ADDED_MASS_ERRORS[_known_dimensions(size) == 2]
+    return tuple(
+        EstimatedValue(key, -estimate.values[one] * form.d / form.L, text, error=error) for key, one in names.items()
+    )
 
 
 _DRIVING = "diameter of the propeller that drives such a hull at its rate: R_0 and t_P go with it"

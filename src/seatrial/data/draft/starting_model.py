@@ -211,9 +211,7 @@ def _steered_model(
             return StartingModel(name, why, free, reason, ("delta",), approach, particulars)
         if is_rate_steady(records):
             why = "forces over drift, yaw rate, rudder; mmg goes farther with a propeller's rate (init --gear)"
-            reason = (
-                "the linear terms; the others near 0, by priors as wide as of published ships"
-            )
+            reason = "the linear terms; the others near 0, by priors as wide as of published ships"
             free = (*_LINEAR_TERMS, *HIGHER_ORDER_SPREAD)
             return StartingModel(_SHIP, why, free, reason, ("delta",), approach)
     why = "the simplest with a rudder; 'seatrial models' lists others, 'seatrial models NAME' what one needs"

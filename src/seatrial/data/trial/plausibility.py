@@ -3,12 +3,12 @@
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from seatrial.core.equations import Model
 from seatrial.core.text.numbers import significant
 from seatrial.core.text.words import enumeration
-from seatrial.core.values import NOT_MEASURED, Finding, InputError, Severity, Ship
+from seatrial.core.values import NOT_MEASURED, Finding, InputError, Prior, Severity, Ship
 from seatrial.core.values.files import is_file
 from seatrial.data.read.record_file import file_digest
 from seatrial.data.trial.priors import EarlierResult
@@ -87,7 +87,7 @@ def _finding(message: str, advice: str) -> Finding:
 ESTIMATED = "ESTIMATED"
 """Marks a line of a trial file whose number is not measured, in a comment, as `seatrial init` writes it."""
 _TABLE = re.compile(r"^\[+(?P<name>[\w.]+)\]+")
-_MARKED = re.compile(rf"^(?P<key>\w+)\s*=[^#]*# {ESTIMATED}: (?P<text>[^;]*)")
+_MARKED = re.compile(rf"^(?P<key>\w+)\s*=[^#]*# {ESTIMATED}: (?:within (?P<percent>\d+(?:\.\d+)?) %, )?(?P<text>[^;]*)")
 _THRUSTER_NAME = re.compile(r'^name\s*=\s*"(?P<name>[^"]*)"')
 ESTIMATED_VALUES = "estimated-values"
 _FOLLOWING = {"pitch_ratio": ("k_0", "k_1", "k_2")}
@@ -97,7 +97,8 @@ _FOLLOWING = {"pitch_ratio": ("k_0", "k_1", "k_2")}
 def with_estimates_named(trial: Trial, text: str) -> Trial:
     """Return the trial of a file with this text: marked values say that they are estimated, as does a warning.
 
-    Where the mark is removed with the number, nothing is said of it.
+    What a mark says that the value is within is the standard deviation of its prior: a part of every interval. Where
+    the mark is removed with the number, nothing is said of it.
     """
     marks = dict(_marks(text))
     if not marks:
@@ -107,8 +108,16 @@ def with_estimates_named(trial: Trial, text: str) -> Trial:
     )
 
 
-def _marks(text: str) -> Iterator[tuple[str, str]]:
-    """Keys of marked lines, those of a thruster as its parameters are named, and how each value was estimated."""
+@dataclass(frozen=True)
+class _Mark:
+    """How a value was estimated, and its standard deviation over the value; 0: not stated."""
+
+    text: str
+    error: float
+
+
+def _marks(text: str) -> Iterator[tuple[str, _Mark]]:
+    """Keys of marked lines, those of a thruster as its parameters are named, with their marks."""
     table, thruster = "", ""
     for line in text.splitlines():
         if heading := _TABLE.match(line):
@@ -117,17 +126,22 @@ def _marks(text: str) -> Iterator[tuple[str, str]]:
             thruster = name["name"]
         elif mark := _MARKED.match(line):
             key = f"{mark['key']}_{thruster}" if table == "thruster" else mark["key"]
-            yield key, mark["text"].strip()
+            yield key, _Mark(mark["text"].strip(), float(mark["percent"] or 0.0) / 100.0)
 
 
-def _with_sources(model: Model, marks: Mapping[str, str]) -> Model:
+def _with_sources(model: Model, marks: Mapping[str, _Mark]) -> Model:
     """The model whose marked values say so, and those that follow from a marked particular of the ship."""
-    following = {name: f"of {key}: {text}" for key, text in marks.items() for name in _FOLLOWING.get(key, ())}
+    following = {
+        name: _Mark(f"of {key}: {mark.text}", 0.0) for key, mark in marks.items() for name in _FOLLOWING.get(key, ())
+    }
     from_series = {n for n in following if n in model.parameters and OOSTERVELD in model.parameters[n].source}
-    for name, text in {**marks, **{n: following[n] for n in from_series}}.items():
+    for name, mark in {**marks, **{n: following[n] for n in from_series}}.items():
         if name in model.parameters and not model.parameters[name].free:
-            value = model.parameters[name].value
-            model = model.with_values({name: value}, source=f"{NOT_MEASURED}: {text}")
+            value, source = model.parameters[name].value, f"{NOT_MEASURED}: {mark.text}"
+            model = model.with_values({name: value}, source=source)
+            if mark.error and value:
+                prior = Prior(value, mark.error * abs(value), source)
+                model = model.with_parameters(model.parameters.with_priors({name: prior}))
     return model
 
 

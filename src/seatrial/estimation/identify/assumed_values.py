@@ -35,11 +35,10 @@ from seatrial.physics.simulate.replay import inputs_of
 MATTERS = 1.0
 """Change of a coefficient over half its interval, and of predictions over the noise, from which a value matters: an
 interval that is right but for this value would no longer hold the truth; chosen."""
-PLAUSIBLE_ERROR = {"rho": 0.025, "c55": 0.2}
-"""Standard deviation of values that are known better than to `RELATIVE_CHANGE`, water between fresh and salt, or worse:
-the moment of a waterplane whose coefficient is right within 0.05 (D'Arcangelo 1969, in Parsons 2003)."""
 _STEP = 0.01  # of such an error, of differences by it: small against the curve of outputs; chosen
 _LEVER = "y_"  # begins the names of the places of thrusters across the craft
+_WITH_MASS = ("I_z", "I5", "X_udot", "Y_vdot", "N_rdot")
+"""What a hull that is heavier than taken has more of: estimated, it is from the same form."""
 MAX_NAMED = 3
 """Values of which a warning says what they do; chosen."""
 
@@ -108,23 +107,23 @@ def estimated_value_shifts(estimation: Estimation) -> tuple[EstimatedValueShift,
     names = [n for n, p in held.items() if p.source.startswith(NOT_MEASURED) or _spread(p) > 0.0]
     if not names:
         return ()
-    groups = [[held[name] for name in group] for group in _wrong_together(names)]
-    errors = [_spread(g[0]) or PLAUSIBLE_ERROR.get(g[0].name, RELATIVE_CHANGE) for g in groups]
-    candidates = [_larger(group, error) for group, error in zip(groups, errors, strict=True)]
+    groups = {name: [held[member] for member in group] for name, group in _wrong_together(names).items()}
+    errors = [_spread(group[0]) or RELATIVE_CHANGE for group in groups.values()]
+    candidates = [_larger(name, group, error) for (name, group), error in zip(groups.items(), errors, strict=True)]
     test, problem = score_test(own_criterion(estimation), candidates), estimation.estimate.problem
     visible = np.sqrt(test.information / np.isfinite(problem.data.measured).sum())
     moves = test.by_candidates[: len(problem.free)].T
     return tuple(map(EstimatedValueShift, test.names, errors, moves, visible.tolist()))
 
 
-def _larger(group: Sequence[Parameter], error: float) -> Candidate:
+def _larger(name: str, group: Sequence[Parameter], error: float) -> Candidate:
     """Values that are larger by a share together, as a candidate of which 1 is that share."""
 
     def problem_with(problem: OutputError, size: float) -> OutputError:
         values = {p.name: (1.0 + size * error) * p.value for p in group}
         return replace(problem, model=problem.model.with_values(values))
 
-    return Candidate(enumeration([p.name for p in group]), problem_with, _STEP)
+    return Candidate(name, problem_with, _STEP)
 
 
 def _spread(parameter: Parameter) -> float:
@@ -134,10 +133,17 @@ def _spread(parameter: Parameter) -> float:
     return parameter.prior.standard_deviation / abs(parameter.value)
 
 
-def _wrong_together(names: Sequence[str]) -> list[list[str]]:
-    """The names, those of the levers of thrusters in one group: they are estimated from one size of the craft."""
+def _wrong_together(names: Sequence[str]) -> dict[str, list[str]]:
+    """The values that are wrong together, by the name of each group: levers of thrusters, what goes with m, others.
+
+    What goes with m is also wrong by itself.
+    """
     levers = [name for name in names if name.startswith(_LEVER)]
-    return [*([levers] if levers else []), *([name] for name in names if name not in levers)]
+    groups = {enumeration(levers): levers} if levers else {}
+    groups |= {name: [name] for name in names if name not in levers}
+    if "m" in groups:
+        groups["m"] += [name for name in names if name in _WITH_MASS]
+    return groups
 
 
 def errors_of(shifts: Sequence[EstimatedValueShift], free: Sequence[str]) -> dict[str, float]:
