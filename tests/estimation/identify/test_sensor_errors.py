@@ -112,9 +112,23 @@ def test_an_antenna_whose_place_is_stated_is_no_suspect(length: float | None, na
     """A model that is not the craft's would have it elsewhere; whoever measured it knows better."""
     track = {channel: np.linspace(0.0, 1.0, 20) for channel in ("x0", "y0", "psi")}
     record = Record.from_arrays("run", np.arange(20.0), track)
-    motion, timing = instruments._Motion(track, track), instruments._Timing((record,), {}, is_known=True)
+    motion, timing = (
+        instruments._Motion(track, track),
+        instruments._Timing((record,), {}, dict.fromkeys(track, 0.1), is_known=True),
+    )
     suspects = instruments._of_receiver(motion, timing, Sensors(), length)
     assert {e.name for suspect in suspects for e in suspect.errors} - {"lag_receiver"} == names
+
+
+@pytest.mark.parametrize(("noise", "negligible"), [(0.5, 0.2), (0.01, 0.1), (0.015, 0.15)])
+def test_a_lag_counts_where_it_moves_its_channel_by_more_than_the_noise(noise: float, negligible: float) -> None:
+    """Of a craft that turns fast a tenth of a second does; half a sample is left open in any case."""
+    time = np.arange(100) * 0.2
+    record = Record.from_arrays("run", time, {"psi": time})
+    timing = instruments._Timing((record,), {}, {"psi": noise}, is_known=False)
+    slope = 0.1 * math.sqrt(2.0) * np.sin(2.0 * np.pi * np.arange(100) / 50.0)
+    (error,) = timing.late(instruments.Late.HEADING, {"psi": slope}, 0.0).errors
+    assert error.negligible == pytest.approx(negligible)
 
 
 @pytest.mark.long

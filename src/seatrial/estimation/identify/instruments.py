@@ -21,7 +21,7 @@ from seatrial.estimation.estimate.point_estimate import (
     residual_correlation,
     residual_spread,
 )
-from seatrial.estimation.estimate.process_noise import ProcessNoise
+from seatrial.estimation.estimate.process_noise import ProcessNoise, third_difference_noise
 from seatrial.estimation.identify.score_test import Candidate, ScoreTest, added_input, score_test
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.prediction_error import join_segments
@@ -175,7 +175,8 @@ def _finding(name: str, delays: dict[str, float], sample: float, remedy: _Lag | 
 _BIAS, _SCALE = 0.02, 0.05  # rad/s and 1: standard deviations of a yaw rate's zero and scale, before records; chosen
 _LEAST_BIAS, _LEAST_SCALE = 0.002, 0.01  # rad/s and 1: below, a good rate gyro may be off; chosen
 _LEAST_LEVER = 0.05  # of the ship's length, as in `antenna_place`: less is what a model of sway misses; chosen
-_LEAST_LAG = 0.2  # s: below, a model that is not the craft's may well ask for it; chosen
+_LEAST_LAG = 0.2  # s: below, the model of a slow craft that is not its own may well ask for it; chosen
+_LEAST_SLOPE = 1e-12  # of a channel that does not move, for a division
 _LAG = 1.0  # s, that of a lag where it is sought; chosen: filters of receivers and compasses
 _ANY_PLACE = 3.0**-0.5  # standard deviation of a place that is uniform from -1 to 1
 _MOST = 4.0  # deviations up to which it is an instrument's error; beyond, it is what the model misses; chosen
@@ -294,20 +295,26 @@ class _Timing:
     """What is known of the timing of measured channels.
 
     Attributes:
-        delays: as `instrument_errors` has them; is_known: whether the trial states that its inputs are on time: the
-            clock of the log is right, so that no channel has a lag but one that the records show.
+        delays: as `instrument_errors` has them; noise: channel -> standard deviation of its white noise.
+        is_known: whether the trial states that its inputs are on time: the clock of the log is right, so that no
+            channel has a lag but one that the records show.
     """
 
     records: Sequence[Record]
     delays: Mapping[str, float | None]
+    noise: Mapping[str, float]
     is_known: bool
 
     def late(self, late: Late, slopes: Mapping[str, Array], least: float) -> Suspect:
-        """Return a lag; the sample interval of its source leaves open half of it to either side, as with inputs."""
+        """Return a lag; the sample interval of its source leaves open half of it to either side, as with inputs.
+
+        It is negligible as far as it moves no channel by more than the noise there: of a slow craft that is long.
+        """
         channels = TIMED_CHANNELS[late]
         interval = max(r.channel(c).sample_s or r.dt for r in self.records for c in channels if c in r)
         stated = [deviation for c in channels if (deviation := self.delays.get(c)) is not None]
-        deviation, negligible = 0.0 if 0.0 in stated else _LAG, max(0.5 * interval, _LEAST_LAG)
+        hidden = min(self.noise[c] / max(float(np.std(slope)), _LEAST_SLOPE) for c, slope in slopes.items())
+        deviation, negligible = 0.0 if 0.0 in stated else _LAG, max(0.5 * interval, min(_LEAST_LAG, hidden))
         undetected = min(stated, default=0.0 if self.is_known else interval / UNIFORM)
         error = SensorError(lag_name(late), "s", deviation, undetected, negligible, _measured(slopes), least)
         instrument = f"the {late.replace('_', ' ')}"
@@ -415,7 +422,8 @@ def instrument_errors(
     is_known = any(delays.get(n) == 0.0 for n in runs.model.input_names) and not any(
         nuisance.correction.kind == "delay" for nuisance in runs.nuisances
     )
-    timing = _Timing(records, delays, is_known)
+    noise = dict(zip(runs.data.outputs, third_difference_noise(runs).tolist(), strict=True))
+    timing = _Timing(records, delays, noise, is_known)
     among = [*_of_yaw(motion, timing)] if "r" in motion.channels else []
     if {"x0", "y0"} <= motion.channels.keys():
         among += _of_receiver(motion, timing, Sensors.from_text(runs.model.equations.sensors), length)
