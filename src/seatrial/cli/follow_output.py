@@ -59,10 +59,10 @@ def live_display(trial: "Trial", port: int | None) -> "Iterator[Show]":
         live = held.enter_context(LiveDisplay(heading=heading))
 
         def show(snapshot: "Snapshot", counts: "SampleCounts") -> None:
-            shown = in_units_of_the_fit(snapshot, trial)
-            live.show(shown, counts)
+            converted = in_units_of_the_fit(snapshot, trial)
+            live.show(converted, counts)
             if show_on_page is not None:
-                show_on_page(shown, counts)
+                show_on_page(converted, counts)
 
         yield show
 

@@ -256,11 +256,11 @@ def finding_section(findings: Sequence[Finding]) -> Section:
     groups: dict[tuple[str, str, str], list[Finding]] = {}
     for f in worst_first(findings):
         groups.setdefault((f.severity, f.code, f.advice), []).append(f)
-    shown = tuple(_group(group) for group in groups.values() if group[0].severity is not Severity.INFO)
+    warnings = tuple(_group(group) for group in groups.values() if group[0].severity is not Severity.INFO)
     notes = tuple(_group(group) for group in groups.values() if group[0].severity is Severity.INFO)
     count = sum(len(group) for group in groups.values() if group[0].severity is Severity.INFO)
     fold = (Section(counted(count, "note"), parts=notes, is_folded=True),) if notes else ()
-    return Section("Findings", "findings", parts=(*shown, *fold), level=Level.PAGE)
+    return Section("Findings", "findings", parts=(*warnings, *fold), level=Level.PAGE)
 
 
 def _group(findings: Sequence[Finding]) -> Section:
