@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-from importlib.metadata import version as installed_version
 from pathlib import Path
 from types import ModuleType
 
@@ -21,7 +20,7 @@ os.environ["MATPLOTLIBRC"] = str(DOCS / "matplotlibrc")  # the notebook's kernel
 
 project = "seatrial"
 author = "the seatrial developers"
-release = version = installed_version("seatrial")
+release = version = seatrial.__version__
 
 extensions = [
     "sphinx.ext.autodoc",

@@ -21,6 +21,7 @@ PICTURE_FUNCTIONS: tuple[Callable[[], Figure], ...] = (
     results.roll_decay, results.heave_pitch, results.designed, results.coverage, results.loop_blocks,
     choices.axes_and_signs, choices.manoeuvres, choices.regressions, choices.searches, choices.entered, choices.gusts,
     choices.followed, choices.own_model, choices.both_sides, choices.sides_and_depth,
+    choices.heel, choices.proposed,
     exports.export_casadi, exports.export_matlab, exports.export_gazebo, exports.export_ardupilot,
     contributions.contributed_model, contributions.contributed_reader, contributions.contributed_check,
     contributions.contributed_estimator, contributions.contributed_optimiser, contributions.contributed_figure,

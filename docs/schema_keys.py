@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Iterator, Mapping
+from inspect import getdoc
 from typing import Any
 
 from write_schemas import kind_of
@@ -11,9 +12,12 @@ JsonSchema = Mapping[str, Any]
 REQUIRED = "required"
 
 
-def schema_keys(schema: JsonSchema) -> str:
-    """Return a table for each table of the file, in the order in which they are met from the root."""
-    return "\n".join(_table(path, entry, schema) for path, entry in _tables(schema))
+def schema_keys(schema: JsonSchema, classes: Mapping[str, object]) -> str:
+    """Return a table for each table of the file, in the order in which they are met from the root.
+
+    `classes`: those of the tables by name; a key that a table inherits has its meaning from the class that has it.
+    """
+    return "\n".join(_table(path, entry, schema, classes) for path, entry in _tables(schema))
 
 
 def _tables(schema: JsonSchema) -> Iterator[tuple[str, JsonSchema]]:
@@ -41,8 +45,13 @@ def _references(value: JsonSchema) -> Iterator[tuple[str, str]]:
             yield from ((name, form) for name, _ in _references(inner))
 
 
-def _table(path: str, entry: JsonSchema, schema: JsonSchema) -> str:
-    required, meanings = set(entry.get("required", ())), _meanings(entry)
+def _table(path: str, entry: JsonSchema, schema: JsonSchema, classes: Mapping[str, object]) -> str:
+    required = set(entry.get("required", ()))
+    own = classes.get(entry["title"])
+    bases = own.__mro__[1:] if isinstance(own, type) else ()
+    meanings: dict[str, str] = {}
+    for text in (*(getdoc(base) or "" for base in reversed(bases)), entry.get("description", "")):
+        meanings |= _meanings(text, entry)
     columns = ["key", *(["meaning"] if meanings else []), "type", "default"]
     rows = [
         [
@@ -58,16 +67,16 @@ def _table(path: str, entry: JsonSchema, schema: JsonSchema) -> str:
     return "\n".join([heading, "", table[0], "|" + "---|" * len(columns), *table[1:], ""])
 
 
-def _meanings(entry: JsonSchema) -> dict[str, str]:
-    """Return what each key means, from the section Attributes of the docstring of its table."""
-    listed = entry.get("description", "").partition("Attributes:\n")[2]
+def _meanings(docstring: str, entry: JsonSchema) -> dict[str, str]:
+    """Return what each key of a table means, from the section Attributes of a docstring."""
+    listed = docstring.partition("Attributes:\n")[2]
     keys = "|".join(f"{key}_?" for key in entry.get("properties", {}))
     lines = re.sub(r"\n {5,}", " ", listed).replace("None:", "without it:").splitlines()
     meanings: dict[str, str] = {}
     for part in (part for line in lines for part in re.split(rf"; (?=(?:{keys}): )", line.strip())):
         names, _, text = part.partition(": ")
         meanings |= {name.rstrip("_"): text.rstrip(".").replace("|", "\\|") for name in names.split(", ")}
-    return meanings
+    return {name: text for name, text in meanings.items() if name in entry.get("properties", {})}
 
 
 def _type(value: JsonSchema, schema: JsonSchema) -> str:

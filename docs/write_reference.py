@@ -13,8 +13,10 @@ import typer
 from schema_keys import schema_keys
 
 from seatrial.cli import app
+from seatrial.control.loopfile import schema as loop_tables
 from seatrial.control.loopfile.schema import loop_schema
 from seatrial.core.values import NOTATION
+from seatrial.data.trial import schema as trial_tables
 from seatrial.data.trial.schema import trial_schema
 
 DOCS = Path(__file__).parent
@@ -29,8 +31,8 @@ NOTATION_START, NOTATION_END = "<!-- written by write_reference.py -->", "<!-- e
 NOTATION_HEAD = ("symbol", "meaning", "unit", "frame", "positive")
 KEYS = """# {title}
 
-From the schema of the file; [what the keys mean]({page}) stands on a page of its own. An *amount* is a number in the
-SI unit shown, or a table with a unit of its own: `{{ value = 22, unit = "deg" }}`. {unit}Where no default is shown
+From the schema of the file; [its page]({page}) has examples, and meanings where none stands here. An *amount* is a
+number in the SI unit shown, or a table with a unit of its own: `{{ value = 22, unit = "deg" }}`. {unit}Where no default is shown
 nothing is assumed, or it follows from what else is given.
 
 """
@@ -115,9 +117,10 @@ def pages() -> Iterator[tuple[Path, str]]:
     conventions = DOCS / "conventions.md"
     yield conventions, _with_notation(conventions.read_text(encoding="utf-8"))
     loop_unit = "Where no unit is shown it is that of the output or the actuator. "
-    for kind, schema, unit in (("trial", trial_schema(), ""), ("loop", loop_schema(), loop_unit)):
+    tables = (("trial", trial_schema(), vars(trial_tables), ""), ("loop", loop_schema(), vars(loop_tables), loop_unit))
+    for kind, schema, classes, unit in tables:
         head = KEYS.format(title=f"Keys of the {kind} file", page=f"{kind}-file.md", unit=unit)
-        yield DOCS / f"{kind}-keys.md", f"{GENERATED}{head}{schema_keys(schema)}"
+        yield DOCS / f"{kind}-keys.md", f"{GENERATED}{head}{schema_keys(schema, classes)}"
 
 
 def main(*, check: bool) -> int:

@@ -1,6 +1,8 @@
 """Pictures of choices: what manoeuvres, derivatives, searches and disturbances are worth, measured on the examples."""
 
 import shutil
+import subprocess
+import sys
 import tempfile
 from dataclasses import replace
 from pathlib import Path
@@ -13,18 +15,25 @@ from matplotlib.figure import Figure
 import seatrial as st
 from seatrial import estimators
 from seatrial.api import prepared_run
+from seatrial.control.proposals import Stretch, gain_schedule, look
+from seatrial.control.schedule import schedule
+from seatrial.control.task import ScheduleGrid
 from seatrial.core.figures.run import hull_outline
 from seatrial.core.results import Fit
 from seatrial.core.results.online import Snapshot
 from seatrial.core.values import Array
 from seatrial.physics.manoeuvres.programme import programme
-from seatrial.physics.models.published import SHARE_SPREAD, share_name
+from seatrial.physics.models.published import SHARE_SPREAD, container_ship, share_name
 from seatrial.physics.simulate import replay
 from seatrial.physics.simulate.steer import manoeuvre
 from seatrial.problems.twin_ships import shallow_water_ship, twin_screw_ship
 
 NOMOTO = {"K": 0.15, "T": 8.0, "U": 2.0}  # 1/s, s, m/s: a craft of some 8 m; chosen
 TRUE_DIAMETER = 3.0 * 320.0  # m, tactical, of the ship of the tutorial, as the page has it
+SHIP_RATE = 100.0 / 60.0  # rps, some 20 kn of the container ship; chosen
+HEEL_SHOWN = 400.0  # s; chosen
+SEA_STRETCH, LOG_SHOWN = 1200.0, 120.0  # s of the log that the estimate rests on, and that are drawn; chosen
+TRUE_SEA = {"height": 2.4, "peak period": 8.5, "heading": np.radians(120.0)}  # m, s, rad, of examples/fins_at_sea.py
 LOOKS = (("o", BLUE), ("s", ORANGE), ("^", GREEN), ("D", GREY))
 """Marker and colour of the first, second, ... set of dots."""
 
@@ -84,6 +93,48 @@ def sides_and_depth() -> Figure:
     for axes in (left, right):
         axes.set_aspect("equal")
         axes.set(xlabel="east, lengths", ylabel="north, lengths")
+    return figure
+
+
+def heel() -> Figure:
+    """Heel of the published container ship in a turning circle and in a zigzag."""
+    ship = container_ship()
+    figure, axes = plt.subplots(figsize=(5.4, 3.2))
+    for name, colour in (("turning-circle:20", BLUE), ("zigzag:20/20", ORANGE)):
+        run = st.simulate(ship, name, inputs={"n": SHIP_RATE})
+        axes.plot(*thinned(run.time, np.degrees(run["phi"])), color=colour, label=name.replace(":", ", "))
+    axes.axhline(0.0, color=GREY, linewidth=0.8)
+    axes.set(xlabel="time [s]", ylabel="roll to starboard [deg]", xlim=(0.0, HEEL_SHOWN))
+    axes.legend()
+    return figure
+
+
+def proposed() -> Figure:
+    """Roll and fins of the tutorial's log, and the sea that twenty minutes of it show, with the true one."""
+    task = st.load_loop(REPOSITORY / "examples" / "fin_stabiliser.toml")
+    with tempfile.TemporaryDirectory() as name:
+        (Path(name) / "examples").symlink_to(REPOSITORY / "examples")
+        subprocess.run([sys.executable, "examples/fins_at_sea.py"], cwd=name, check=True)
+        time, roll, fins = np.loadtxt(Path(name) / "log.csv", delimiter=",", skiprows=1).T
+    stretch = Stretch(0.0, float(time[1]), np.radians(np.column_stack([roll, fins]))[time < SEA_STRETCH], task.U)
+    grid = ScheduleGrid((task.U,), (np.radians(90.0).item(),), (2.5,))
+    gains = gain_schedule(schedule(task, grid, {}, 1, lambda _: None).points, task.loop.gains.names)
+    sea = look(task, gains, stretch).sea
+    figure, (log, shown) = plt.subplots(2, 1, figsize=(5.4, 4.4), height_ratios=(1.4, 1.0))
+    part = time < LOG_SHOWN
+    log.plot(time[part], roll[part], color=BLUE, label="roll")
+    log.plot(time[part], fins[part], color=ORANGE, linestyle="--", label="fins")
+    log.set(xlabel="time [s]", ylabel="angle [deg]")
+    log.legend(loc="upper right", ncols=2)
+    estimates = {"height": sea.height, "peak period": sea.period, "heading": sea.heading}
+    for row, (label, true) in enumerate(TRUE_SEA.items()):
+        found = estimates[label]
+        shown.plot([found.lower / true, found.upper / true], [row, row], color=BLUE, linewidth=3.0, alpha=0.5)
+        shown.plot(found.value / true, row, "o", color=BLUE)
+    shown.axvline(1.0, color=GREY, linewidth=1.0, linestyle=":")
+    shown.set_yticks(range(len(TRUE_SEA)), list(TRUE_SEA))
+    shown.set(xlabel="estimate with its 95 % interval, over the true value", ylim=(-0.6, len(TRUE_SEA) - 0.4))
+    shown.invert_yaxis()
     return figure
 
 

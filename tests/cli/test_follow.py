@@ -9,10 +9,15 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from tests.onboard.fabricated import mmg
 from tests.onboard.streams import EXAMPLES, LINES
+
+from seatrial.cli.follow_output import in_units_of_the_fit
+from seatrial.data.trial import load_trial
 
 COMMAND = (sys.executable, "-c", "from seatrial.cli import main; main()", "follow")
 
@@ -145,3 +150,13 @@ def test_standard_input_gives_the_same_coefficients(tmp_path: Path, run_command:
     assert done.returncode == 0, done.stderr
     piped, read = (json.loads(path.read_text())["coefficients"] for path in (json_file, tmp_path / "file.json"))
     assert piped == read
+
+
+@pytest.mark.parametrize(
+    "example, units", [("thrusters", ["N/kg", "1/s"]), ("station", ["N", "kg/s"]), ("waterjet", ["1"])]
+)
+def test_forces_on_each_kilogram_have_the_units_that_identify_prints(example: str, units: list[str]) -> None:
+    trial = load_trial(EXAMPLES / f"{example}.toml")
+    of_the_model = tuple({"N/kg": "N", "1/s": "kg/s"}.get(unit, unit) for unit in units)
+    snapshot = replace(next(iter(mmg(0.0))), units=of_the_model)
+    assert list(in_units_of_the_fit(snapshot, trial).units) == units

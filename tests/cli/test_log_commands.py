@@ -46,7 +46,7 @@ def test_a_draft_is_written_once_and_checked(tmp_path: Path) -> None:
     assert (
         "rad/s, positive to starboard by the rate of the heading" in text
         and "zigzag1, " in text
-        and "Next: name the column of rudder" in text
+        and "Next: no column is a rudder (delta)" in text
     )
     assert "seatrial open" in text and [path.name for path in tmp_path.glob("trial*")] == ["trial.toml"]
     with pytest.raises(InputError, match=r"trial.toml' exists; add --overwrite"):

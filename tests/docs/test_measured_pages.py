@@ -1,8 +1,8 @@
 """The documentation stays short: words, and lengths of sentences, as `benchmarks/measure_docs.py` counts them."""
 
-from measure_docs import by_hand, count_words, counted, median_words, pages, sentences
+from measure_docs import APART, by_hand, count_words, counted, median_words, pages, sentences
 
-MOST_WORDS = 42_300  # written by hand; chosen
+MOST_WORDS = 44_900  # as `wc -w` counts, outside what scripts write; chosen, and may only fall
 LONGEST, MEDIAN = 40, 18  # words of a sentence, chosen
 COUNTS = [counted(path) for path in pages()]
 
@@ -12,7 +12,8 @@ def test_pages_have_no_more_words_than_before() -> None:
 
 
 def test_no_sentence_has_more_than_forty_words() -> None:
-    long = [f"{p.name}: {s[:90]}" for p in COUNTS for s in p.sentences if count_words(s) > LONGEST]
+    pages_and_root = [*COUNTS, *map(counted, APART)]
+    long = [f"{p.name}: {s[:90]}" for p in pages_and_root for s in p.sentences if count_words(s) > LONGEST]
     assert long == []
 
 

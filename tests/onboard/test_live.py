@@ -200,3 +200,9 @@ def test_a_line_has_values_with_half_intervals_and_no_typography() -> None:
         and "3 late, 1 repeated, 12 missing" in text
     )
     assert "10^-3" in log_line(list(mmg(300.0))[-1], SampleCounts())
+
+
+def test_before_an_estimate_a_line_has_no_start_values() -> None:
+    snapshot = replace(list(mmg(20.0))[-1], phase=EstimatorPhase.WAITING)
+    text = log_line(snapshot, SampleCounts())
+    assert "| no estimate yet |" in text and "X_vv -0" not in text

@@ -1,5 +1,6 @@
 """A real browser opens the pages, clicks through them and has nothing to complain about."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -9,12 +10,14 @@ from tests.reporting.fabricated_comparison import fabricated_comparison
 from tests.reporting.fabricated_design import fabricated_design
 from tests.reporting.fabricated_tuning import fabricated_autopilot, fabricated_fin
 from tests.reporting.test_campaign import fabricated_campaign
+from tests.reporting.test_verification import LEGS, TURNS
 
 from seatrial.core.results import Fit, Study
 from seatrial.reporting.campaign import html as campaign_html
 from seatrial.reporting.comparison import html as comparison_html
 from seatrial.reporting.design import html as design_html
 from seatrial.reporting.page import html as fit_html
+from seatrial.reporting.pages import report_page
 from seatrial.reporting.study import html as study_html
 from seatrial.reporting.tuning import html as tuning_html
 
@@ -101,11 +104,13 @@ def pages_of_every_kind(fit: Fit, study: Study) -> "dict[str, str]":
         "fit": fit_html(fit), "study": study_html(study), "fin": tuning_html(fabricated_fin()),
         "autopilot": tuning_html(fabricated_autopilot()), "design": design_html(fabricated_design()),
         "comparison": comparison_html(fabricated_comparison()), "campaign": campaign_html(fabricated_campaign()),
+        "legs": report_page(replace(LEGS, gains=LONG_GAINS)), "turns": report_page(TURNS),
     }  # fmt: skip
 
 
 RULES = (Path(__file__).parent / "page_rules.js").read_text(encoding="utf-8")
-KINDS = ("fit", "study", "fin", "autopilot", "design", "comparison", "campaign")
+KINDS = ("fit", "study", "fin", "autopilot", "design", "comparison", "campaign", "legs", "turns")
+LONG_GAINS = {"KP": 11.053, "KI": 4.3507e-11, "KD": 32.736}  # more than a telephone's line holds
 
 
 @pytest.fixture(scope="module")

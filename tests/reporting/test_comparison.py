@@ -20,8 +20,13 @@ def test_the_summary_names_what_differs() -> None:
     assert outcome(comparison) == [
         "Taken together, the 2 coefficients differ (χ² 18.2 with 2 degrees of freedom, p < 0.001).",
         "Significant one by one: K 0.15 → 0.19.",
-        "Turning circle with 35° to port: tactical diameter in still water 3.1 → 2.8.",
+        "Turning circle with 35° to port: tactical diameter in still water 3.10 → 2.80 L.",
     ]
+    (turn, *others) = comparison.manoeuvres
+    diameter = next(d for d in turn.measures if d.is_significant)
+    vaguer = replace(diameter, name="advance_L", lower=-3.0, upper=-0.1)
+    both = replace(comparison, manoeuvres=(replace(turn, measures=(vaguer, *turn.measures)), *others))
+    assert outcome(both)[-1].endswith(f"3.10 → 2.80 L and 1 more of {len(turn.measures) + 1} values.")
     alike = replace(comparison, coefficients=(), joint_test=None, manoeuvres=())
     assert outcome(alike) == ["No single quantity differs significantly."]
     assert comparison.significant == ("K", "tactical_diameter_L of turning-circle:35:port")

@@ -80,6 +80,20 @@ def test_the_verdict_compares_with_the_best_that_keeps_the_limits(design: Design
     )
 
 
+def test_errors_of_simulated_trials_beyond_those_predicted_are_marked_with_the_coefficient(design: Design) -> None:
+    confirmation = design.confirmation
+    assert confirmation is not None
+    errors = confirmation.bound.copy()
+    errors[2] *= 9.0
+    fact = rows(replace(design, confirmation=replace(confirmation, error=errors)))["Simulated trials"]
+    assert fact.is_good is False
+    assert fact.text.endswith(
+        f"their errors are 1.00 to 9.00 of those predicted, most that of {design.coefficients[2]}."
+    )
+    untried = replace(design, confirmation=replace(confirmation, converged_runs=0, error=np.full(11, np.nan)))
+    assert rows(untried)["Simulated trials"].is_good is None
+
+
 def test_a_design_that_is_no_better_says_so(design: Design) -> None:
     worse = replace(design, designed=replace(design.designed, relative_error=design.baselines[0].relative_error * 2.0))
     assert ", no better: the best" in verdict(worse)

@@ -89,6 +89,14 @@ def diverged(result: Design) -> Design:
     return replace(result, designed=replace(result.designed, sampled_relative_error=errors))
 
 
+def missed(made: Design, which: int) -> Design:
+    confirmation = made.confirmation
+    assert confirmation is not None
+    errors = confirmation.error.copy()
+    errors[which] *= 2.0
+    return replace(made, confirmation=replace(confirmation, error=errors))
+
+
 def strayed(result: Design) -> Design:
     far = np.full(len(result.designed.sampled_distance), 121.0)
     return replace(result, designed=replace(result.designed, sampled_distance=far))
@@ -167,6 +175,7 @@ PLANTED: list[tuple[str, str, Callable[..., Result]]] = [
     *(("autopilot", name, lambda pilot, n=n: drawn(pilot, n, n - (n > 0)))
       for name in ("Track", "Station") for n in (0, 100)),
     ("autopilot", "Warnings", lambda pilot: replace(pilot, findings=(WARNING,))),
+    ("design", "Simulated trials", lambda made: missed(made, 3)),
     ("design", "Limits", strayed),
     ("design", "Limits", diverged),
     ("design", "Warnings", lambda made: replace(made, findings=(WARNING,))),

@@ -11,10 +11,11 @@ from pathlib import Path
 
 import platformdirs
 
+from seatrial import __version__
 from seatrial.core.values import InputError
 from seatrial.core.values.files import write_atomically
 
-LIBRARIES = ("seatrial", "numpy", "scipy", "numba", "pandas", "pydantic", "typer")
+LIBRARIES = ("numpy", "scipy", "numba", "pandas", "pydantic", "typer")
 # of a stream: no space, beyond the user's quota, defective; writing a file has a sentence of its own
 _DISK_ERRORS = (errno.ENOSPC, errno.EDQUOT, errno.EIO)
 NAME_LENGTH = 12  # hexadecimal digits of a traceback's digest in its file's name: chosen, no two alike in practice
@@ -43,7 +44,7 @@ def error_message(error: Exception) -> str:
 def _written_report(error: Exception) -> Path:
     """Write traceback, command line and versions to a file of the user's log folder, or of the temporary one."""
     trace = "".join(traceback.format_exception(error))
-    facts = [f"{name} {version(name)}" for name in LIBRARIES]
+    facts = [f"seatrial {__version__}", *(f"{name} {version(name)}" for name in LIBRARIES)]
     text = "\n".join(
         [f"command: {sys.argv}", f"{platform.platform()}, Python {platform.python_version()}", *facts, trace]
     )

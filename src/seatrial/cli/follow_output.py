@@ -5,6 +5,7 @@ import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING
@@ -58,9 +59,10 @@ def live_display(trial: "Trial", port: int | None) -> "Iterator[Show]":
         live = held.enter_context(LiveDisplay(heading=heading))
 
         def show(snapshot: "Snapshot", counts: "SampleCounts") -> None:
-            live.show(snapshot, counts)
+            converted = in_units_of_the_fit(snapshot, trial)
+            live.show(converted, counts)
             if show_on_page is not None:
-                show_on_page(snapshot, counts)
+                show_on_page(converted, counts)
 
         yield show
 
@@ -95,10 +97,20 @@ def reports_as_lines(trial: "Trial") -> "Iterator[Show]":
     reporter = StreamReporter(stream_heading(trial))
 
     def show(snapshot: "Snapshot", counts: "SampleCounts") -> None:
-        if (report := reporter.report(snapshot, counts)) is not None:
+        if (report := reporter.report(in_units_of_the_fit(snapshot, trial), counts)) is not None:
             print(json.dumps(report, allow_nan=False), flush=True)
 
     yield show
+
+
+def in_units_of_the_fit(snapshot: "Snapshot", trial: "Trial") -> "Snapshot":
+    """Return the snapshot with units over kilograms where no thrust is known in newtons, as `identify` prints them."""
+    from seatrial.physics.models.thruster_layout import layout_of
+    from seatrial.reporting.model_chapter import mass_specific_unit
+
+    if not trial.model.has_thrusters or layout_of(trial.model).has_bollard:
+        return snapshot
+    return replace(snapshot, units=tuple(map(mass_specific_unit, snapshot.units)))
 
 
 def stream_heading(trial: "Trial") -> str:

@@ -164,14 +164,26 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
     if draft.lacks_heading and (heading := draft.column_like_heading):
         stated = in_shell(f"{heading}=psi")
         return f"no column is recognised as the heading: if one is, the same command with --overwrite --column {stated}"
+    if draft.lacks_input:
+        return _input_to_be_named(draft, out)
     if draft.lacks_manoeuvre:
         return (
             "every run is one straight course, which shows nothing of the rudder: record a zigzag 10/10 to either side"
         )
-    steps += [f"name the column of rudder, thruster or roll angle in {out}"] if draft.lacks_input else []
     if steps:
         return f"{', '.join(steps)}, then seatrial check {in_shell(out)}"
     return f"seatrial identify {in_shell(out)} --out results"
+
+
+def _input_to_be_named(draft: "DraftTrial", out: Path) -> str:
+    """The option that names a column that was not recognised; where none is left, what can be done with the others."""
+    kinds = "a rudder (delta), the command of a thruster (command_1) or a roll angle (phi)"
+    if not draft.unrecognised:
+        return (
+            f"no column is {kinds}, and a model needs one: record it, too; of the others seatrial check {in_shell(out)}"
+        )
+    stated = in_shell(f"{draft.unrecognised[0]}=command_1")
+    return f"no column is recognised as {kinds}: if one is, the same command with --overwrite --column {stated}"
 
 
 def _print_guesses(guesses: "Sequence[ColumnGuess]") -> None:

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Protocol, Self, TextIO
 
-from seatrial.core.results.online import SampleCounts, Snapshot
+from seatrial.core.results.online import EstimatorPhase, SampleCounts, Snapshot
 from seatrial.core.text.numbers import DASH
 from seatrial.core.text.plain import ascii_text
 from seatrial.core.text.words import counted, enumeration, printable
@@ -141,7 +141,7 @@ class _Lines:
 
 def log_line(snapshot: Snapshot, counts: SampleCounts) -> str:
     """Return moment, phase, coefficients with half of their 95 % intervals, what is not identified, faults, change,
-    and the gains proposed.
+    and the gains proposed; before there is an estimate no coefficients, which would be the start values.
     """
     sizes = f"{counted(snapshot.samples, 'sample')} {counted(snapshot.runs, 'run')}"
     rows = [
@@ -151,7 +151,7 @@ def log_line(snapshot: Snapshot, counts: SampleCounts) -> str:
     names = [printable(name) for name in snapshot.unidentified]
     parts = [
         f"{time_text(snapshot.time)} {snapshot.phase.value} {sizes}",
-        ", ".join(rows),
+        "no estimate yet" if rows and snapshot.phase is EstimatorPhase.WAITING else ", ".join(rows),
         f"not identified: {enumeration(names, MAX_NAMES)}" if names else "",
         faults_text(counts),
         watch_sentence(snapshot),

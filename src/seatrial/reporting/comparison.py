@@ -111,19 +111,32 @@ def outcome(comparison: Comparison) -> list[str]:
     if apart:
         sentences.append(f"Significant one by one: {enumeration([_clause(d) for d in apart])}.")
     for m in comparison.manoeuvres:
-        differing = [d for d in m.measures if d.is_significant]
-        names = [f"{simulated_measure_label(d.name)[0]} {_clause(d, name='')}".strip() for d in differing]
-        if names:
-            sentences.append(f"{_title(m)}: {enumeration(names)}.")
+        differing = sorted((d for d in m.measures if d.is_significant), key=_clearness, reverse=True)
+        if differing:
+            more = f" and {len(differing) - 1} more of {counted(len(m.measures), 'value')}" if differing[1:] else ""
+            sentences.append(f"{_title(m)}: {_measure_clause(differing[0])}{more}.")
     if not sentences or (not apart and not any(d.is_significant for m in comparison.manoeuvres for d in m.measures)):
         sentences.append("No single quantity differs significantly.")
     return sentences
 
 
-def _clause(d: Difference, name: str | None = None) -> str:
-    """A quantity with both values."""
-    label = d.name if name is None else name
-    return f"{label} {exact(d.first, 3)} → {exact(d.second, 3)}".strip()
+def _clause(d: Difference) -> str:
+    """A coefficient with both values."""
+    return f"{d.name} {exact(d.first, 3)} → {exact(d.second, 3)}"
+
+
+def _measure_clause(d: Difference) -> str:
+    """A measure with both values, in the digits of its table, and its unit."""
+    label, unit = simulated_measure_label(d.name)
+    _, first, second, *_ = _row(d, (label, unit))
+    return f"{label} {first} → {second} {unit}".strip()
+
+
+def _clearness(d: Difference) -> float:
+    """How often a difference holds the width of its interval; 0 where it has none."""
+    if d.difference is None or d.lower is None or d.upper is None or d.upper <= d.lower:
+        return 0.0
+    return abs(d.difference) / (d.upper - d.lower)
 
 
 def difference_table(rows: Sequence[Difference], label: Callable[[str], tuple[str, str]] | None = None) -> TextTable:

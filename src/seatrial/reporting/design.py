@@ -58,6 +58,7 @@ from seatrial.reporting.time_figures import run_figure
 # relative standard error from which on only its order is shown
 LARGEST_SHOWN_ERROR = 100.0
 _SIDES = ("port", "starboard")
+_BEYOND = 3.0  # standard deviations by which an error may exceed the one predicted: one in a thousand does; chosen
 _CRITERION_NAMES = {"worst": "worst relative standard error", "mean": "mean relative standard error"}
 
 
@@ -73,7 +74,7 @@ def key_facts(design: Design) -> tuple[KeyFact, ...]:
     )
     rows = (
         KeyFact("Ships that differ", _prior_draws(design), "ships"),
-        KeyFact("Simulated trials", _confirmation(design), "confirmation"),
+        KeyFact("Simulated trials", _confirmation(design), "confirmation", _is_confirmed(design)),
         KeyFact("Limits", _limits(design), "orders", None if is_kept and design.designed.diverged else is_kept),
     )
     warned = [f.code for f in design.findings if f.severity is not Severity.INFO]
@@ -151,11 +152,20 @@ def _confirmation(design: Design) -> str:
         return ""
     text = f"{confirmation.converged_runs} of {counted(confirmation.runs, 'simulated trial')} could be fitted"
     ratios = confirmation.error / confirmation.bound
-    ratios = ratios[np.isfinite(ratios)]
-    if not ratios.size:
+    if not np.isfinite(ratios).any():
         return f"{text}."
-    reach = " to ".join(fixed(float(end), 2) for end in (ratios.min(), ratios.max()))
-    return f"{text}; their errors are {reach} of those predicted."
+    reach = " to ".join(fixed(float(end), 2) for end in (np.nanmin(ratios), np.nanmax(ratios)))
+    most = "" if _is_confirmed(design) else f", most that of {design.coefficients[int(np.nanargmax(ratios))]}"
+    return f"{text}; their errors are {reach} of those predicted{most}."
+
+
+def _is_confirmed(design: Design) -> bool | None:
+    """Whether no error of the simulated trials is beyond the one predicted; None where none was tried."""
+    confirmation = design.confirmation
+    if confirmation is None or not confirmation.converged_runs:
+        return None
+    spread = 1.0 / math.sqrt(2.0 * confirmation.converged_runs)  # of an rms over so many normal errors, over itself
+    return bool(np.all(confirmation.error <= (1.0 + _BEYOND * spread) * confirmation.bound))
 
 
 def _limits(design: Design) -> str:

@@ -9,7 +9,8 @@ from markupsafe import Markup
 
 from seatrial.core.results import Table
 from seatrial.core.text.numbers import DASH, significant
-from seatrial.core.values import Finding, worst_first
+from seatrial.core.text.words import counted
+from seatrial.core.values import Finding, Severity, worst_first
 
 # A chapter of a result as data, which page and terminal render alike: sentences, a table, pictures, parts.
 
@@ -251,12 +252,15 @@ _TITLE = Markup('<span class="severity {}">{}</span><code>{}</code>')
 
 
 def finding_section(findings: Sequence[Finding]) -> Section:
-    """Return the chapter on the findings of a result, on the page; empty where there are none."""
+    """Return the chapter on the findings of a result, on the page, notes behind a fold; empty where there are none."""
     groups: dict[tuple[str, str, str], list[Finding]] = {}
     for f in worst_first(findings):
         groups.setdefault((f.severity, f.code, f.advice), []).append(f)
-    parts = tuple(_group(group) for group in groups.values())
-    return Section("Findings", "findings", parts=parts, level=Level.PAGE)
+    warnings = tuple(_group(group) for group in groups.values() if group[0].severity is not Severity.INFO)
+    notes = tuple(_group(group) for group in groups.values() if group[0].severity is Severity.INFO)
+    count = sum(len(group) for group in groups.values() if group[0].severity is Severity.INFO)
+    fold = (Section(counted(count, "note"), parts=notes, is_folded=True),) if notes else ()
+    return Section("Findings", "findings", parts=(*warnings, *fold), level=Level.PAGE)
 
 
 def _group(findings: Sequence[Finding]) -> Section:

@@ -67,9 +67,9 @@ class Grade(StrEnum):
 _LIMITS = {Grade.CLOSELY: 0.1, Grade.WELL: 0.3, Grade.ROUGHLY: 0.7, Grade.POORLY: 1.0}
 _GRADE_LIMITS = ", ".join(f"{grade} to {limit:g}" for grade, limit in _LIMITS.items())
 GRADE_NOTE = (
-    f"Grades: error over the standard deviation of the motion, {_GRADE_LIMITS}. That of a heading is "
-    f"{math.degrees(HELD_COURSE_SPREAD):.0f}° where it is held, and {math.degrees(HEADING_SPREAD):.0f}° where it turns "
-    "on and on."
+    f"Grades: error over the standard deviation of the motion, {_GRADE_LIMITS}. That of a held course is "
+    f"{math.degrees(HELD_COURSE_SPREAD):.0f}° of heading and where they lead, that of a heading that turns on and on "
+    f"{math.degrees(HEADING_SPREAD):.0f}°."
 )
 """How a grade comes about, once for a page."""
 

@@ -52,3 +52,13 @@ def test_an_antenna_at_the_bow_shows_it_until_it_is_stated(is_stated: bool) -> N
 def test_a_swing_of_less_than_half_a_circle_is_no_turn() -> None:
     record = turns(-8.0).record.between(80.0, 120.0)
     assert drift_side_findings(RecordedMotion(record)) == ()
+
+
+@pytest.mark.parametrize(
+    "symbols, count", [(("command_1", "command_2"), 1), (("command_3",), 0), (("alpha_1", "alpha_2"), 0)]
+)
+def test_nothing_is_said_of_a_craft_whose_thrusters_can_push_to_the_side(symbols: tuple[str, ...], count: int) -> None:
+    record = turns(-8.0).record
+    thrusters = Record.from_arrays("t", record.time, dict.fromkeys(symbols, np.zeros(len(record))))
+    both = replace(record, channels={**record.channels, **thrusters.channels})
+    assert len(drift_side_findings(RecordedMotion(both))) == count

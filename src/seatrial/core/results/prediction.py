@@ -47,11 +47,16 @@ def motion_spread(name: str, motions: Sequence[Array]) -> float:
 
 
 def motion_spreads(names: Container[str], measured: Record) -> dict[str, float]:
-    """Return what errors of these names over a whole run are compared with, as far as it holds their channels."""
+    """Return what errors of these names over a whole run are compared with, as far as it holds their channels.
+
+    Of a held course the way run is no motion to measure a model by: what counts is how far one 10 degrees off leads.
+    """
     compared = (name for name, channels in MOTIONS.items() if name in names and all(c in measured for c in channels))
     spreads = {name: motion_spread(name, [measured[c] for c in MOTIONS[name]]) for name in compared}
     if spreads.get("psi_deg", math.inf) < _DEGREES * _HELD_WITHIN:
         spreads["psi_deg"] = _DEGREES * HELD_COURSE_SPREAD
+        if "position_m" in spreads:
+            spreads["position_m"] *= math.sin(HELD_COURSE_SPREAD)
     return spreads
 
 

@@ -169,9 +169,10 @@ def drift_side_findings(motion: RecordedMotion) -> tuple[Finding, ...]:
     """Return a warning `drift-side` where the bow points out of every turn, at midship as declared; else nothing.
 
     Forces on the hull need a drift to the inside (Fossen 2021, Handbook of Marine Craft Hydrodynamics and Motion
-    Control, 2nd ed., section 3.3, sideslip and crab angle): sway is negative in a turn to starboard.
+    Control, 2nd ed., section 3.3, sideslip and crab angle): sway is negative in a turn to starboard. Thrusters that can
+    push to the side turn a craft with any drift: nothing is said of these.
     """
-    turns = _turns(motion)
+    turns = [] if _may_push_aside(motion.record) else _turns(motion)
     if not turns or any(turn.outward < LEAST_DRIFT for turn in turns):
         return ()
     sides = [
@@ -187,6 +188,11 @@ def drift_side_findings(motion: RecordedMotion) -> tuple[Finding, ...]:
         "if the antenna is ahead of midship, state it: antenna = { x = ..., y = ... } under [[records]]; else check "
         "the signs of v, of heading and of course",
     ),)  # fmt: skip
+
+
+def _may_push_aside(record: Record) -> bool:
+    """Whether thrusters can hold sway and yaw apart: three of them, or two whose directions change."""
+    return "command_3" in record or "alpha_2" in record
 
 
 def _turns(motion: RecordedMotion) -> list[_Turn]:

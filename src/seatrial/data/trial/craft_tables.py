@@ -46,7 +46,15 @@ _ADDED_SHARE = 1.05  # M_u over the mass, start: a slender hull adds some 5 % in
 
 
 class CommandTable(StrictTable):
-    """Channel of a command, and which of its readings are rest and full ahead."""
+    """Channel of a command, and which of its readings are rest and full ahead.
+
+    Attributes:
+        channel: ``command_1`` and so on.
+        unit: of the readings; ``1``: shares of full command.
+        positive: what a reading above `zero` does.
+        zero: reading at rest; without it: 1500 us, else 0.
+        span: from there to full ahead; without it: 400 us, 100 percent, 1.
+    """
 
     channel: str
     unit: CommandUnit = "1"
@@ -56,7 +64,13 @@ class CommandTable(StrictTable):
 
 
 class AngleTable(StrictTable):
-    """Channel of a thruster's direction, its lag [s] and the fastest turn [rad/s]."""
+    """The direction of a thruster follows a channel.
+
+    Attributes:
+        channel: ``alpha_1`` and so on, or ``delta``.
+        lag: time constant [s].
+        rate: fastest turn [rad/s].
+    """
 
     channel: str
     lag: Annotated[float, Field(ge=0)] = 0.0
@@ -71,7 +85,14 @@ def _angle(value: object) -> object:
 
 
 class RudderTable(StrictTable):
-    """The rudder behind a screw: channel of its angle, place forward [m], movable area [m^2], span [m]."""
+    """The rudder of the MMG method behind a screw.
+
+    Attributes:
+        channel: of its angle.
+        x: forward of the origin [m].
+        area: movable [m^2].
+        span: height of the rudder [m].
+    """
 
     channel: str = "delta"
     x: Annotated[float, InSi("m")]
@@ -80,9 +101,24 @@ class RudderTable(StrictTable):
 
 
 class ThrusterTable(StrictTable):
-    """One `[[thruster]]`: place [m], direction, command, curve, lag and delay [s], thrust at full command [N].
+    """One `[[thruster]]`.
 
-    `same_as`: the thruster whose coefficients it shares. Lengths and angles take a unit as {value, unit}.
+    Attributes:
+        name: part of the names of its force and coefficients.
+        x: forward of the origin [m].
+        y: to starboard [m].
+        angle: direction of thrust, clockwise from ahead: fixed, or a channel that it follows.
+        command: the channel that orders it, and which readings are rest and full ahead.
+        curve: thrust over command: ``power`` with an exponent estimated, ``quadratic``, ``linear``, straight lines
+            between coefficients at `knots`, or K_T over J of a rate in rpm or rps (``open-water``; needs ship.m).
+        knots: shares of full command, as -1, -0.5, 0, 0.5, 1.
+        diameter: of the screw of an ``open-water`` curve.
+        lag: s, where the search starts; 0: none.
+        delay: s, where the search starts: the order is late by two equal time constants in a row of this sum.
+        dead_band: share of full command without thrust; fixed unless `free` of the model names ``dead``.
+        bollard: thrust at full command in water at rest, with which forces are in newtons.
+        same_as: the thruster whose coefficients it shares.
+        rudder: behind a screw of an ``open-water`` curve.
     """
 
     name: str

@@ -48,6 +48,7 @@ class InputRange:
 
     Attributes:
         lower, upper: its range, in `unit`; rate: its largest rate, in `unit` per second, None where it may jump.
+        unit: of the range.
         hold: shortest time between two orders [s].
     """
 

@@ -270,7 +270,7 @@ def _parts(block: RecordsTable, run: RunFiles, *, is_alone: bool) -> list[RunFil
     prefix = "" if is_alone else f"{run.name}-"
     parts = [part for part in block.parts if part.file in ("", run.name)]
     return [
-        replace(run, name=part.name if part.file else prefix + part.name, start=part.start, stop=part.stop)
+        replace(run, name=part.name if part.file else prefix + part.name, start=part.from_, stop=part.to)
         for part in parts
     ] or [run]
 

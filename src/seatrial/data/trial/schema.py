@@ -42,7 +42,16 @@ _NEEDED_BY_OTHERS = {"height", "period"}
 
 
 class SeaTable(StrictTable):
-    """A spectrum; `height` is the significant one, `period` the mean T_1 for ittc2, else that of the peak."""
+    """A spectrum.
+
+    Attributes:
+        spectrum: the ITTC's by the height alone (``ittc``) or with the mean period (``ittc2``); ``bretschneider``,
+            ``jonswap`` by the peak period; ``sea-state`` of the WMO code.
+        height: significant height.
+        period: the mean T_1 of ``ittc2``, else that of the peak.
+        gamma: peak enhancement of ``jonswap``.
+        state: of ``sea-state``.
+    """
 
     spectrum: Literal["ittc", "ittc2", "bretschneider", "jonswap", "sea-state"] = "ittc"
     height: PositiveLength | None = None
@@ -112,7 +121,13 @@ Bound = Annotated[float, Field(allow_inf_nan=True)]
 
 
 class ShipTable(BaseModel):
-    """`[ship]`: every key besides these is a particular by its symbol, a number in SI units or {value, unit}."""
+    """`[ship]`: every key besides these is a particular by its symbol, a number in SI units or {value, unit}.
+
+    Attributes:
+        name: of the craft, in the report.
+        source: citation of the particulars.
+        scale: of a model; 45.7 for 1:45.7.
+    """
 
     model_config = ConfigDict(extra="allow", frozen=True, allow_inf_nan=False)
 
@@ -135,7 +150,12 @@ class ShipTable(BaseModel):
 class TimeColumn(StrictTable):
     """Where the time stands: header name, or number counted from 1; without one the log's own time stamps count.
 
-    `date`, `nanoseconds`, `week`: the columns that complete a time of day, whole seconds, seconds of the GNSS week.
+    Attributes:
+        column: without it: the log's own stamps.
+        unit: of the numbers, or how date and time are written: ``utc``, ``hhmmss``, ``excel``.
+        date: column that completes a time of day.
+        nanoseconds: column that completes whole seconds.
+        week: column that completes seconds of the GNSS week.
     """
 
     column: str | Annotated[int, Field(ge=1)] = ""
@@ -152,10 +172,23 @@ class TimeColumn(StrictTable):
 
 
 class ChannelColumn(StrictTable):
-    """Where a channel stands and what its numbers mean; frame and sign default to the notation table's.
+    """Where a channel stands and what its numbers mean: (cell - zero) / span * scale + offset in its unit.
 
-    The number in `unit` is (cell - zero) / span * scale + offset. A command is held until the next one. Of two rudders,
-    nozzles or shafts `twin` is the other column: the channel is half the sum.
+    Attributes:
+        column: header name, or number counted from 1.
+        unit: of its numbers.
+        frame: without it: that of the notation; ``earth`` makes u, v the velocity north and east, ``enu`` axes to the
+            east and north.
+        positive: the side to which the column counts; without it: that of the notation.
+        reference_point: of the sensor, m forward of midship.
+        zero: reading at rest.
+        span: reading from there to one.
+        scale: factor behind the span.
+        offset: added last.
+        twin: column of the starboard one of two rudders, nozzles or shafts; the channel is half the sum.
+        kind: who set it; a command is held until the next one. Without it: ``command`` for command_1, command_2 and so
+            on, else ``measured``.
+        between: how it runs between samples; without it: from the samples.
     """
 
     column: str | Annotated[int, Field(ge=1)]
@@ -174,7 +207,16 @@ class ChannelColumn(StrictTable):
 
 
 class DeclaredChannel(StrictTable):
-    """`[channels.NAME]`: a channel that the notation table does not have, for models of one's own."""
+    """`[channels.NAME]`: a channel that the notation table does not have, for models of one's own.
+
+    Attributes:
+        meaning: in words.
+        unit: of its numbers.
+        frame: ``body``, ``earth`` or ``none``.
+        positive: direction in words.
+        kind: a command is an order, and is never corrected.
+        between: how it runs between samples.
+    """
 
     meaning: str
     unit: Unit
@@ -185,9 +227,12 @@ class DeclaredChannel(StrictTable):
 
 
 class WavesTable(StrictTable):
-    """`[records.waves]`: heading to the waves (0 following, 180 degrees head; rad without a unit) and ship speed.
+    """`[records.waves]`: how the ship met the waves, for `[excitation]`.
 
-    `sea`: where neither the elevation nor the wave forces were recorded.
+    Attributes:
+        heading: to the waves; 0 following, 180 degrees head.
+        speed: of the ship.
+        sea: the spectrum, where neither the elevation nor the wave forces were recorded.
     """
 
     heading: Angle
@@ -197,7 +242,15 @@ class WavesTable(StrictTable):
 
 @dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
 class ColumnsTable:
-    """Where time and channels stand, in a file or in a stream."""
+    """Where time and channels stand, in a file or in a stream.
+
+    Attributes:
+        header_lines: of a text file, above the names of its columns.
+        encoding: of a text file.
+        separator: of a text file; a comma that separates no cells is a decimal sign.
+        time: column of the time, its unit and what completes it.
+        channels: symbol -> its column, with unit, frame and sign.
+    """
 
     header_lines: Annotated[int, Field(ge=0)] = 0
     encoding: str = "utf-8"
@@ -219,7 +272,13 @@ class ColumnsTable:
 
 @dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
 class SourceTable(ColumnsTable):
-    """`[[records.sources]]`: one file of a run, with its layout and clock."""
+    """`[[records.sources]]`: one file of a run, with its layout and clock.
+
+    Attributes:
+        file: under the folder of `[data]`.
+        format: without it: by the first bytes, or the ending.
+        clock_offset: s added to its stamps.
+    """
 
     file: str
     format: Format | None = None
@@ -227,20 +286,29 @@ class SourceTable(ColumnsTable):
 
 
 class PartTable(StrictTable):
-    """A run cut out of a log: from and to are times after its first sample (``"120 s"``), or names of events.
+    """A run cut out of a log.
 
-    `file`: that of several files out of which it is cut, by its name without the ending; a file of which no part is
-    named stays whole. Without it the part is cut out of each.
+    Attributes:
+        name: of the run.
+        file: that of several files out of which it is cut, by its name without the ending; a file of which no part is
+            named stays whole. Without it the part is cut out of each.
+        from_: time after the first sample (``"120 s"``), or name of an event (``"MODE AUTO"``); without it: the start.
+        to: likewise; without it: the end.
     """
 
     name: str
     file: str = ""
-    start: str = Field("", alias="from")
-    stop: str = Field("", alias="to")
+    from_: str = Field("", alias="from")
+    to: str = ""
 
 
 class OriginTable(StrictTable):
-    """Where the plane of x0 and y0 touches the ellipsoid."""
+    """Where the plane of x0 and y0 touches the ellipsoid.
+
+    Attributes:
+        lat: latitude, positive to the north.
+        lon: longitude, positive to the east.
+    """
 
     lat: Angle
     lon: Angle
@@ -257,7 +325,12 @@ class OriginTable(StrictTable):
 
 
 class AntennaTable(StrictTable):
-    """Where the GNSS antenna is, m forward of midship and to starboard of the centre line."""
+    """Where the GNSS antenna is.
+
+    Attributes:
+        x: m forward of midship.
+        y: m to starboard of the centre line.
+    """
 
     x: float = 0.0
     y: float = 0.0
@@ -265,7 +338,32 @@ class AntennaTable(StrictTable):
 
 @dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
 class RecordsTable(ColumnsTable):
-    """One `[[records]]` block: files of one layout, or one run in several sources; roles, parts and trimming."""
+    """One `[[records]]` block: files of one layout, or one run in several sources; roles, parts and trimming.
+
+    Attributes:
+        files: a glob or a list of globs, under the folder of `[data]`.
+        name: of the run that `sources` make.
+        sources: the files of one run, each with its own layout and clock.
+        parts: runs cut out of a log.
+        clock_offset: s added to the stamps.
+        origin: where the plane of x0 and y0 touches the earth; without it: the first fix.
+        variation: of the compass, positive to the east.
+        antenna: place of the GNSS antenna.
+        format: one of those on the page Logs; without it: by the first bytes, or the ending.
+        scale: length ratio by which the record is Froude-scaled.
+        source: citation of the records.
+        kind: figures and tables call a simulated record a reference; without it: as the file says, else ``measured``.
+        train: patterns of file names without ending; with it all that is not named is left out.
+        validate_: patterns of the runs that are predicted and not fitted.
+        leave_out: patterns of the runs that are not read.
+        session: which runs share their offsets: ``run`` (each file, with its parts), ``all``, ``day`` (date in the file
+            name, else of the first stamp), or a template as ``*_{day}_*``: braces stand for what names the session, *
+            and ? for any letters and for one.
+        rate: Hz to which the records are resampled.
+        skip_acceleration: whether the acceleration run is dropped.
+        from_release: whether what lies before the largest swing of a decay is dropped.
+        waves: how the ship met the waves.
+    """
 
     files: Strings = ()
     name: str = ""
@@ -305,7 +403,11 @@ class RecordsTable(ColumnsTable):
 
 @dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
 class FollowTable(ColumnsTable, StreamSettings):
-    """`[follow]`: the settings of a stream, and in which columns its samples stand."""
+    """`[follow]`: the settings of a stream, and in which columns its samples stand.
+
+    Attributes:
+        waves: how the ship meets them, without `sea`.
+    """
 
     waves: WavesTable | None = None
 
@@ -320,7 +422,11 @@ class FollowTable(ColumnsTable, StreamSettings):
 class MotionColumn(StrictTable):
     """A motion or input of force points: a column of the table, or one value for all points.
 
-    Unit 1: v over U, r L over U. A drift angle must say which way the bow points from the course when it is positive.
+    Attributes:
+        column: header name, or number counted from 1.
+        value: the same for all points.
+        unit: 1 for v over U, r L over U.
+        positive: must be stated of a drift angle: which way the bow points from the course.
     """
 
     column: str | Annotated[int, Field(ge=1)] | None = None
@@ -337,7 +443,14 @@ class MotionColumn(StrictTable):
 
 
 class ForceColumn(StrictTable):
-    """A measured force: its column, unit (1 in a prime system), positive direction and standard deviation in it."""
+    """A measured force.
+
+    Attributes:
+        column: empty cells are not measured.
+        unit: 1 in a prime system.
+        positive: without it: that of the notation.
+        sd: standard deviation, in that unit.
+    """
 
     column: str | Annotated[int, Field(ge=1)]
     unit: Unit
@@ -346,7 +459,21 @@ class ForceColumn(StrictTable):
 
 
 class ForcesTable(StrictTable):
-    """One `[[forces]]` block: static force points of captive tests or CFD."""
+    """One `[[forces]]` block: static force points of captive tests or CFD.
+
+    Attributes:
+        file: the table; format and header are read from it.
+        includes: what the forces hold.
+        motion: u or U; v or beta; r; the model's inputs. v and r are 0 where they are not given.
+        measured: what of X, Y, N was measured.
+        prime: of forces of unit 1: ``rho/2 L d U^2`` (MMG) or ``rho/2 L^2 U^2`` (SNAME), moments with one L more;
+            without it: N and N m.
+        origin: m forward of midship: the point the moments are about, and at which v or beta is measured.
+        motion_origin: the same for v and beta alone; without it: `origin`.
+        sd_percent: standard deviation in per cent of the force's range in the table; this or an sd of each is required.
+        scale: length ratio by which the table is Froude-scaled: dimensional values and `origin` alike.
+        source: citation.
+    """
 
     file: str
     includes: Literal["hull", "hydrodynamic", "pressure", "balance"]
@@ -372,13 +499,23 @@ class ForcesTable(StrictTable):
 
 
 class DataTable(StrictTable):
-    """`[data]`: where record files are sought, relative to the trial file; ${NAME} is an environment variable."""
+    """`[data]`: where record files are sought.
+
+    Attributes:
+        folder: relative to the trial file; ${NAME} is an environment variable.
+    """
 
     folder: str = "."
 
 
 class PriorTable(StrictTable):
-    """Gaussian prior of one parameter, in its own unit."""
+    """Gaussian prior of one parameter, in its own unit.
+
+    Attributes:
+        mean: without it: the start value.
+        sd: standard deviation.
+        source: citation.
+    """
 
     mean: float | None = None
     sd: Annotated[float, Field(gt=0)]
@@ -386,7 +523,22 @@ class PriorTable(StrictTable):
 
 
 class ModelTable(StrictTable):
-    """`[model]`: which equations, which values, what is free."""
+    """`[model]`: which equations, which values, what is free.
+
+    Attributes:
+        name: of the equations; ``seatrial models`` lists them.
+        parameter_set: a published set of values.
+        damping: of the model ``thrusters``.
+        reference_point: m forward of midship: where the model's u, v, x0, y0 are.
+        fixed: parameter -> value; it is not estimated.
+        start: parameter -> value from which the search starts.
+        free: exactly these are estimated; without it: the model's own choice.
+        bounds: parameter -> lower and upper limit; without it: the model's own.
+        priors: parameter -> mean, standard deviation and source.
+        prior_sd_percent: prior of all other free parameters around their start, or what `priors_from` says.
+        priors_from: sources of priors, of which later ones win: literature, which needs `prior_sd_percent`, or the
+            folder of an earlier result.
+    """
 
     name: str
     parameter_set: str | None = None
@@ -404,8 +556,10 @@ class ModelTable(StrictTable):
 class ExcitationTable(StrictTable):
     """`[excitation]`: how an elevation becomes a wave force.
 
-    `box`: closed form for the ship's L, B, d and stiffness; `table`: complex transfer functions in a CSV or NetCDF
-    file; `capytaine`: a dataset of Capytaine at rest, speed terms by strip theory.
+    Attributes:
+        source: ``box``: closed form for the ship's L, B, d and stiffness; ``table``: complex transfer functions in a
+            CSV or NetCDF file; ``capytaine``: a dataset of Capytaine at rest, speed terms by strip theory.
+        file: of a table or dataset; of a trial file under the folder of `[data]`.
     """
 
     source: Literal["box", "table", "capytaine"]
@@ -419,7 +573,31 @@ class ExcitationTable(StrictTable):
 
 
 class TrialFile(StrictTable):
-    """The whole file; records may be missing where a manoeuvre is only to be designed, or a stream to be followed."""
+    """The whole file; records may be missing where a manoeuvre is only to be designed, or a stream to be followed.
+
+    Attributes:
+        question: a sentence for the report.
+        accept: codes of errors despite which runs are used.
+        ship: name and particulars.
+        channels: channels that the notation lacks, for a model of one's own.
+        data: where record files are sought.
+        records: a block for each layout of files.
+        model: equations, values, what is free.
+        thruster: a block for each thruster of the model ``thrusters``.
+        sensors: what stands between motion and records.
+        forces: static force points of captive tests or CFD.
+        excitation: how an elevation becomes a wave force.
+        family: models to compare.
+        compare: published pipeline that is set beside the fit.
+        noise: channel -> known standard deviation, as ``u = 0.02`` or ``psi = { sd = 0.2, unit = "deg" }``; else it is
+            estimated.
+        truth: parameter -> true value, for simulated records.
+        estimate: settings of the estimator.
+        feedback: a controller that was on.
+        design: a manoeuvre to be designed.
+        follow: a stream of samples.
+        proposal: gains proposed while a stream is followed.
+    """
 
     question: str = ""
     accept: tuple[str, ...] = ()

@@ -223,7 +223,11 @@ class SupportVectorSettings:
 @raises_input_error
 @pydantic_dataclass(frozen=True, kw_only=True, config=STRICT_FIELDS)
 class CompareSettings:
-    """`[compare]`: settings of the regressions that `--compare` sets beside the fit."""
+    """`[compare]`: settings of the regressions that `--compare` sets beside the fit.
+
+    Attributes:
+        svr: of the pipeline of Song et al. 2025.
+    """
 
     svr: SupportVectorSettings = Field(default_factory=SupportVectorSettings)
 
@@ -389,8 +393,9 @@ class StreamSettings:
         host, port: on which UDP is listened to.
         batch_window_s: time over which the batch criterion is kept [s].
         forgetting_time_s: time after which the past counts 1/e [s]; None: it counts for ever.
-        page: port of the local page; 0: none.
-        journal: file in which admitted samples are kept; None: beside the result.
+        page: port of the page on this machine, which `--page` overrides; 0: none.
+        journal: file in which admitted samples are kept, relative to the trial file, which `--journal` overrides;
+            None: beside the result.
     """
 
     source: StreamSource

@@ -56,6 +56,7 @@ class Antenna:
     """Place of the receiver's antenna forward and to starboard of the origin [m], where the estimate starts.
 
     Attributes:
+        x, y: forward and to starboard [m].
         sd: standard deviation of either, before any record [m].
     """
 
