@@ -114,6 +114,10 @@ class CloudSwarmReproduction:
         """Return the runs at each heading."""
         return len(next(iter(self.seas.values())))
 
+    def of_variant(self, variant: CloudVariant) -> dict[int, RepeatedSearches]:
+        """Return the searches of a variant of ICPSO by heading."""
+        return {heading: self.variants[variant, heading] for heading in HEADINGS}
+
     def excess_fitness(self, heading: int, searches: RepeatedSearches) -> Array:
         """Fitness off centre after each iteration over the better end of both swarms, less 1; (runs, iterations)."""
         ends = [self.searches[BoxPlacement.OFF_CENTRE, heading, a].histories[:, -1] for a in SwarmAlgorithm]
@@ -366,11 +370,6 @@ class CloudSwarmEvidence:
         swarm = self.off_centre(SwarmAlgorithm.ICPSO)
         simulated = {h: self.output_error[h].evaluations * (1 + len(COEFFICIENTS)) for h in HEADINGS}
         return min(float(swarm[h].evaluations[0]) / simulated[h] for h in HEADINGS)
-
-
-def error_text(searches: dict[int, RepeatedSearches]) -> str:
-    """Mean errors at all headings."""
-    return "/".join(f"{100.0 * float(np.mean(f.mean_error)):.1f}" for f in searches.values()) + " %"
 
 
 # What the record says of the unknowns: twelve of the print, and changes of the eight that it does not see.

@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from seatrial.core.text import significant
 from seatrial.core.values import Array
 from seatrial.estimation.problem import OutputError, cut_segments
 from seatrial.numerics.optimise import Box, FitnessMemory, levenberg_marquardt, search
@@ -315,13 +314,3 @@ def simulated_steps(evaluations: int, *, has_slopes: bool) -> int:
 def count_below_printed(errors: Array, heading: int) -> int:
     """Of the eight relative errors (8,), those below IWHO's printed one."""
     return int(np.sum(100.0 * np.abs(errors) < printed_error(heading, SearchAlgorithm.IWHO)))
-
-
-def percent_text(values: list[float]) -> str:
-    """Numbers at the three headings."""
-    return "/".join(f"{v:.2f}" for v in values) + " %"
-
-
-def range_text(values: list[float]) -> str:
-    """Return the least and the largest number, two digits each."""
-    return f"{significant(min(values), 2)} to {significant(max(values), 2)} %"

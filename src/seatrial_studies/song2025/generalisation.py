@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Direction, Table
+from seatrial.core.results import Direction
 from seatrial.core.values import Array, InputError, Record, spelling_hint
 from seatrial.data.example_series import JET_VELOCITY, SENSOR_NOISE, SLEW_RATE
 from seatrial.estimation.information import directions
@@ -25,11 +25,9 @@ from seatrial.physics.simulate import (
     trajectory,
 )
 from seatrial_studies.controller_cost import (
-    ControlLabels,
     ControlledMotion,
     ControllerCost,
     ControlTask,
-    controller_cost_table,
     controller_costs,
 )
 from seatrial_studies.song2025.published import (
@@ -423,7 +421,6 @@ def _log_slopes(
 
 # The last row: an autopilot tuned on each method's coefficients and simulated on the true craft.
 
-TITLE = "What wrong coefficients cost a controller"
 TURN = math.radians(30.0)  # change of heading to be followed, our choice
 DURATION, TURN_STEP = 120.0, 0.25  # s; long enough for the turn, and a step well below the craft's time constants
 NOZZLE_LIMIT = math.radians(35.0)  # the largest nozzle angle of the paper's manoeuvres
@@ -432,16 +429,6 @@ START_GAINS = np.array([1.0, 3.0])  # KP [rad/rad], KD [s]: where the tuning sta
 NOZZLE = "delta"
 _STEP = HeadingStep(TURN, NOZZLE_LIMIT, NOZZLE, DURATION, TURN_STEP)
 _RUNAWAY = 100.0  # approach speeds beyond which a motion has run away; our choice
-_LABELS = ControlLabels(("KP", "KD, s"), "heading error rms, deg", "nozzle rms, deg")
-_NOTE = (
-    f"A change of heading by {math.degrees(TURN):.0f}° at 0.8 m/s, nozzle = KP error - KD r up to 35°, "
-    f"{DURATION:.0f} s, "
-    f"tuned by simulation of the craft that the coefficients describe for least heading variance plus "
-    f"{NOZZLE_WEIGHT:g}² "
-    "nozzle variance; then simulated on the true craft. 'Predicted': on the craft that the coefficients describe. "
-    "'Cost "
-    "over best': the sum that was to be least, on the true craft, over that of the controller tuned on the truth."
-)
 
 
 def heading_task() -> ControlTask[Model]:
@@ -471,8 +458,3 @@ def _turn(craft: Model, gains: Array) -> ControlledMotion:
 def heading_controller_costs(crafts: Mapping[str, Model]) -> tuple[ControllerCost, ...]:
     """Return what controllers tuned on these crafts cost on the true one."""
     return controller_costs(crafts, TRUTH.craft(), heading_task())
-
-
-def heading_controller_table(costs: tuple[ControllerCost, ...]) -> Table:
-    """Return the last table of the page."""
-    return controller_cost_table(TITLE, {"30° to starboard": costs}, _LABELS, _NOTE)

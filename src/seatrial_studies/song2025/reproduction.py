@@ -129,6 +129,11 @@ class EstimatorResult:
         """Return the largest of the relative errors' magnitudes."""
         return float(np.max(np.abs(self.errors)))
 
+    @property
+    def wrong_signs(self) -> int:
+        """Return how many coefficients have the other sign than the truth."""
+        return int(np.sum(self.values * true_coefficients() < 0.0))
+
 
 @dataclass(frozen=True, eq=False)
 class LassoSelection:
@@ -158,6 +163,16 @@ class SupportVectorSetting:
     def distance(self) -> float:
         """Return the root mean square of the distances."""
         return float(np.sqrt(np.mean(self.distances**2)))
+
+    @property
+    def median_distance(self) -> float:
+        """Return the median of the distances' magnitudes."""
+        return float(np.median(np.abs(self.distances)))
+
+    @property
+    def largest_distance(self) -> float:
+        """Return the largest of the distances' magnitudes."""
+        return float(np.max(np.abs(self.distances)))
 
 
 @dataclass(frozen=True, eq=False)

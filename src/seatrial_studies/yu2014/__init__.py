@@ -5,11 +5,12 @@ import time
 import numpy as np
 
 from seatrial.core.results import Study
-from seatrial.core.values import ProgressReporter, versions
+from seatrial.core.values import ProgressReporter
 from seatrial.physics.loops import Preamplifier
+from seatrial_studies.study_page import study_from
 from seatrial_studies.yu2014.audit import audit
+from seatrial_studies.yu2014.facts import FACTS, FinGainEvidence, responses_at_table_1
 from seatrial_studies.yu2014.published import (
-    SOURCE,
     TABLE_1,
     calibrated_K_q,
     performance,
@@ -31,10 +32,7 @@ from seatrial_studies.yu2014.searches import (
     time_domain_search,
     time_domain_seconds,
 )
-from seatrial_studies.yu2014.tables import figures, tables
-from seatrial_studies.yu2014.verdicts import FinGainEvidence, answer, checks, claims, responses_at_table_1
 
-QUESTION = "Does a genetic algorithm find the gains of a fin stabiliser that save most energy, and what beats them?"
 # fin-rate variance allowed, over the paper's; our choice
 RATES = np.linspace(0.5, 1.75, 11)
 
@@ -50,21 +48,7 @@ def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -
     began = time.perf_counter()
     report = report_progress or (lambda _: None)
     evidence = _evidence(quick=quick, seed=seed, report=report)
-    return Study(
-        name="yu2014",
-        source=SOURCE,
-        title="Three gains of a fin stabiliser: a published genetic algorithm repeated",
-        question=QUESTION,
-        answer=answer(evidence),
-        claims=claims(evidence),
-        checks=checks(evidence),
-        tables=tables(evidence),
-        figures=figures(evidence),
-        seed=seed,
-        quick=quick,
-        elapsed_s=time.perf_counter() - began,
-        versions=versions(),
-    )
+    return study_from("yu2014", FACTS, evidence, seed=seed, began=began)
 
 
 def _evidence(*, quick: bool, seed: int, report: ProgressReporter) -> FinGainEvidence:

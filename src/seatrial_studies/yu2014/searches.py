@@ -27,13 +27,11 @@ from seatrial.physics.simulate import loop_record
 from seatrial_studies.heave_pitch_search import is_smaller
 from seatrial_studies.yu2014.published import (
     DESIGN_SEA,
-    HEIGHT,
     KNOT,
     LOWER,
+    PUBLISHED,
     PUBLISHED_LOOP,
     PUBLISHED_VALUES,
-    RECORD_SECONDS,
-    STEP,
     TABLE_1,
     UPPER,
     VARIANCE_ROWS,
@@ -57,7 +55,6 @@ SEEDS, QUICK_SEEDS = 12, 4
 BITS = 17
 BOX = Box(LOWER, UPPER)
 FRAGILE_MS = 2.0
-TIMES_TITLE = "Time of one published search of 10,000 evaluations"
 
 
 @dataclass(frozen=True)
@@ -212,11 +209,11 @@ def record_cost(loop: TransferLoop, gains: Array, seed: int) -> tuple[float, flo
     from scipy.signal import lsim
 
     states = state_space(loop)
-    disturbance = np.random.default_rng(seed).standard_normal(round(RECORD_SECONDS / STEP) + 1)
+    disturbance = np.random.default_rng(seed).standard_normal(round(PUBLISHED.record_seconds / PUBLISHED.step) + 1)
     system = (states.closed_loop_matrix(gains), states.b[:, None], states.c[None], np.zeros((1, 1)))
-    times = STEP * np.arange(len(disturbance))
+    times = PUBLISHED.step * np.arange(len(disturbance))
     return (
-        _least_cpu_time(lambda: loop_record(states, gains, disturbance, STEP)),
+        _least_cpu_time(lambda: loop_record(states, gains, disturbance, PUBLISHED.step)),
         _least_cpu_time(lambda: lsim(system, disturbance, times, interp=False)),
     )
 
@@ -245,13 +242,15 @@ def time_domain_seconds(seed: int) -> tuple[float, float]:
 
 MS_LIMIT = 2.0
 SHORT_CRESTED = SeaCondition(spreading=1.0, name="ITTC 3.3 m, short-crested")
-_JONSWAP = jonswap(HEIGHT, 2.0 * math.pi / ittc(HEIGHT).modal_frequency)
+_JONSWAP = jonswap(PUBLISHED.height, 2.0 * math.pi / ittc(PUBLISHED.height).modal_frequency)
 # seen by no search
 HELD_OUT_SEAS = (
     SeaCondition(spectrum=_JONSWAP, name="JONSWAP 3.3 m, 9.1 s, long-crested"),
     SeaCondition(spectrum=_JONSWAP, spreading=1.0, name="JONSWAP 3.3 m, 9.1 s, short-crested"),
-    SeaCondition(spectrum=bretschneider(HEIGHT, 9.7), spreading=1.0, name="Bretschneider 3.3 m, 9.7 s, short-crested"),
-    SeaCondition(spectrum=bretschneider(HEIGHT, 8.0), name="Bretschneider 3.3 m, 8 s, long-crested"),
+    SeaCondition(
+        spectrum=bretschneider(PUBLISHED.height, 9.7), spreading=1.0, name="Bretschneider 3.3 m, 9.7 s, short-crested"
+    ),
+    SeaCondition(spectrum=bretschneider(PUBLISHED.height, 8.0), name="Bretschneider 3.3 m, 8 s, long-crested"),
     SeaCondition(heading=135.0, spreading=1.0, name="ITTC 3.3 m, short-crested, 135°"),
     SeaCondition(heading=45.0, spreading=1.0, name="ITTC 3.3 m, short-crested, 45°"),
     SeaCondition(heading=45.0, name="ITTC 3.3 m, long-crested, 45°"),
@@ -616,7 +615,7 @@ def time_domain_search(preamplifier: Preamplifier, seed: int) -> TimeDomainSearc
     states, slope = state_space(of.loop), wave_slope_record(np.random.default_rng([seed, 10]))
 
     def by_records(points: Array) -> Array:
-        records = (loop_record(states, gains, slope, STEP) for gains in points)
+        records = (loop_record(states, gains, slope, PUBLISHED.step) for gains in points)
         with np.errstate(over="ignore", invalid="ignore"):
             variances = np.array([record.var(axis=0) for record in records])
         bounded = np.where(np.isfinite(variances) & (variances < _DIVERGED), variances, np.inf)
@@ -642,6 +641,8 @@ def time_domain_search(preamplifier: Preamplifier, seed: int) -> TimeDomainSearc
 def wave_slope_record(generator: np.random.Generator) -> Array:
     """Return the effective wave slope [rad] of 1000 s at 0.1 s, 18 kn, 90 deg, long-crested ITTC 3.3 m."""
     beta = math.radians(DESIGN_SEA.heading)
-    lines = realise(ittc(HEIGHT), DESIGN_SEA.speed * KNOT, beta, generator, count=LINES, spacing=Spacing.JITTERED)
-    time = np.arange(round(RECORD_SECONDS / STEP) + 1, dtype=np.float64) * STEP
+    lines = realise(
+        ittc(PUBLISHED.height), DESIGN_SEA.speed * KNOT, beta, generator, count=LINES, spacing=Spacing.JITTERED
+    )
+    time = np.arange(round(PUBLISHED.record_seconds / PUBLISHED.step) + 1, dtype=np.float64) * PUBLISHED.step
     return response_to_slope(lines, np.ones(len(lines.omega), dtype=np.complex128), np.asarray(time))
