@@ -74,6 +74,14 @@ class FactTable(Generic[EvidenceT]):
 
 
 class _WordingFormatter(Formatter):
+    def get_field(self, field_name: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> Any:
+        try:
+            return super().get_field(field_name, args, kwargs)
+        except (LookupError, AttributeError, TypeError):
+            raise InputError(
+                f"there is no fact '{field_name}'; name it otherwise, or the evidence that has it"
+            ) from None
+
     def format_field(self, value: Any, format_spec: str) -> str:
         return fact_text(value, format_spec)
 
@@ -102,7 +110,11 @@ def _number_text(fact: Any, form: str) -> str:
 
 
 def fact_at(path: str, facts: Facts) -> Any:
-    """Return the fact at a path such as ``errors[IWHO]`` or ``weight.mean``."""
+    """Return the fact at a path such as ``errors[IWHO]`` or ``weight.mean``.
+
+    Raises:
+        InputError: there is none.
+    """
     return _FORMATTER.get_field(path, (), facts)[0]
 
 
@@ -112,10 +124,7 @@ def worded(wording: str, facts: Facts) -> str:
     Raises:
         InputError: it names a fact that is not there.
     """
-    try:
-        return _FORMATTER.vformat(wording, (), facts)
-    except (KeyError, AttributeError) as error:
-        raise InputError(f"no fact {error} for the wording '{wording[:80]}'; name the evidence that has it") from None
+    return _FORMATTER.vformat(wording, (), facts)
 
 
 def all_hold(conditions: Conditions, facts: Facts) -> bool:
