@@ -151,7 +151,7 @@ def test_two_functions_may_not_have_one_name() -> None:
         FACTS.declare(turns)
 
 
-@pytest.mark.parametrize("name", ["alexandersson2022", "meng2014", "qi2025", "song2025", "yu2014"])
+@pytest.mark.parametrize("name", ["alexandersson2022", "meng2014", "qi2025", "section2d", "song2025", "yu2014"])
 def test_study_files_declare_their_own_study(name: str) -> None:
     assert read_study(name).name == name
     assert "work is counted" in shared_phrases()["time_is_no_verdict"]

@@ -17,10 +17,6 @@ from seatrial.physics.hydro import LewisForm, group_velocity, wavenumber
 
 # What is documented of the flume, the section and its holding; how the files are laid out.
 
-SOURCE = (
-    "Regular beam waves on a 2-D ship section, NTNU (open data, CC0): sway-heave-roll (3PPH), sway-heave (4PPH) and "
-    "heave-roll (6PPH) in a flume 0.6 m wide; no paper's claims are judged, the documented values are"
-)
 RHO, G = 1000.0, 9.81
 BEAM, DRAUGHT, LENGTH = 0.40, 0.20, 0.586
 MASS, KG, GM, ROLL_RADIUS = 46.8, 0.108, 0.0629, 0.36 * BEAM
