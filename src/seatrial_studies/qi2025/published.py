@@ -9,10 +9,10 @@ import numpy as np
 from seatrial.core.values import Array
 from seatrial.physics.hydro import G, encounter_frequency
 from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.sea import ittc, motion_statistics, realise
-from seatrial.physics.simulate import frequency_response, linear_system, trajectories
-from seatrial_studies.heave_pitch_search import SearchData, candidate_matrices, held_force_ship, simulate_search_data
-from seatrial_studies.seaway import HEADINGS, SIGNIFICANT_HEIGHT, SPEED, box_hull, theoretical_coefficients
+from seatrial.physics.sea import ittc, realise
+from seatrial.physics.simulate import trajectories
+from seatrial_studies.heave_pitch_search import SearchData, candidate_matrices, simulate_search_data
+from seatrial_studies.seaway import HEADINGS, SIGNIFICANT_HEIGHT, SPEED, theoretical_coefficients
 from seatrial_studies.study_file import Declared, read_study
 
 # What Qi et al. 2025 print: tables 2 to 5, statements, and what figures show.
@@ -123,7 +123,6 @@ class WildHorseAudit:
     sign_effect: dict[int, tuple[float, float]]
     saturated_values: tuple[int, int]
     median_extremes: tuple[float, float]
-    significant_amplitudes: tuple[float, float]
     kinematic_pitch: float
     spectrum_heights: tuple[float, float]
     step_rank: int
@@ -133,7 +132,6 @@ class WildHorseAudit:
 def audit(seas: list[SearchData], seed: int) -> WildHorseAudit:
     """Everything that needs no search; `seas` at 45 degrees."""
     tops = np.array([np.abs(s.states[:, [0, 2]]).max(axis=0) for s in seas])
-    heave, pitch = _statistics_at_45()
     return WildHorseAudit(
         {h: _implied_speeds(h) for h in HEADINGS},
         {h: _implied_frequency(h) for h in HEADINGS},
@@ -142,7 +140,6 @@ def audit(seas: list[SearchData], seed: int) -> WildHorseAudit:
         {h: _sign_effect(h, seed) for h in HEADINGS},
         _saturation(),
         (float(np.median(tops[:, 0])), math.degrees(float(np.median(tops[:, 1])))),
-        (heave, pitch),
         _kinematic_pitch(),
         _spectrum_heights(),
         _step_rank(seas[0]),
@@ -189,18 +186,6 @@ def _saturation() -> tuple[int, int]:
     errors = np.concatenate([recomputed_error(h, SearchAlgorithm.WHO) for h in (90, 135)])
     low, high = SATURATED_RANGE
     return int(np.sum((errors >= low) & (errors <= high))), len(errors)
-
-
-def _statistics_at_45() -> tuple[float, float]:
-    """Significant amplitudes of heave [m] and pitch [deg] with the 90 degree coefficients, exact in the waves."""
-    spectrum = ittc(SIGNIFICANT_HEIGHT)
-    omega = np.linspace(*spectrum.band(), 2000)
-    omega_e = encounter_frequency(omega, SPEED, math.radians(45.0))
-    response = frequency_response(linear_system(held_force_ship(45), ("z", "theta")), omega_e)[:, :, :2]
-    forces = np.stack(box_hull().forces(omega, SPEED, math.radians(45.0)), axis=1)
-    motion = np.einsum("kyu,ku->ky", response, forces)
-    heave, pitch = (motion_statistics(spectrum, omega, omega_e, motion[:, j]).significant for j in (0, 1))
-    return heave, math.degrees(pitch)
 
 
 def _kinematic_pitch() -> float:

@@ -436,7 +436,7 @@ class SectionResponse:
         heave: up, from the mean of both accelerometers, m/m.
         roll: starboard over port accelerometer, m/m: roll angle times the distance between them.
         sway: from the accelerometer, m/m; force: holding force, N/m.
-        camera_heave, camera_roll: amplitudes only; the camera's clock is its own. Zero where it is dead.
+        camera_sway: amplitude only; the camera's clock is its own. Zero where it is dead.
         relative_error: relative standard error of the heave amplitude by the harmonic fit.
     """
 
@@ -450,8 +450,6 @@ class SectionResponse:
     roll: complex
     sway: complex
     force: complex
-    camera_heave: float
-    camera_roll: float
     camera_sway: float
     relative_error: float
 
@@ -495,7 +493,6 @@ def measure_response(run: FlumeRun, probes: Probes, timing: Timing = STEADY_TIMI
     up = harmonics(time, -0.5 * (record["z_ddot_1"] + record["z_ddot_2"])[rows], w, HARMONIC_ORDERS)
     difference = first(record["z_ddot_2"] - record["z_ddot_1"])
     turned = [first(record[s]) for s in ("v_dot", "F_y")]
-    camera = [abs(first(record[s])) for s in ("z", "phi", "y0")]
     return SectionResponse(
         run=run,
         period_count=round((time[-1] - time[0]) / run.period),
@@ -507,9 +504,7 @@ def measure_response(run: FlumeRun, probes: Probes, timing: Timing = STEADY_TIMI
         roll=-difference / w**2 / onward,
         sway=-turned[0] / w**2 / onward,
         force=turned[1] / onward,
-        camera_heave=camera[0] / abs(onward),
-        camera_roll=camera[1] / abs(onward),
-        camera_sway=camera[2] / abs(onward),
+        camera_sway=abs(first(record["y0"])) / abs(onward),
         relative_error=up.relative_error,
     )
 

@@ -381,14 +381,14 @@ def misprints(evidence: SupportVectorEvidence) -> Facts:
     """What the print does where it cannot be meant."""
     audit = evidence.audit
     worst = {fit.variant: max(fit.errors.items(), key=lambda item: abs(item[1])) for fit in audit.equation_14_fits}
-    turned = PublishedManoeuvre.ZIGZAG_35
-    (cell,) = [i for i in audit.table_4_implications if i.run is turned and i.channel == "r"]
+    zigzag = PublishedManoeuvre.ZIGZAG_35
+    (cell,) = [i for i in audit.table_4_implications if i.run is zigzag and i.channel == "r"]
     fresh, salt = audit.table_1_masses
     return {
         "turn": audit.reversed_turn,
         "sway": audit.undamped_sway,
         "divergence": [{"run": run, "seconds": s} for run, s in audit.undamped_sway.divergence_times.items()],
-        "cc": audit.undamped_sway.corrected_accuracy[turned].cc,
+        "cc": audit.undamped_sway.corrected_cc,
         "sides": audit.asymmetry,
         "factors": audit.parenthesis_factors,
         "readings": {variant[0]: error for variant, error in worst.items() if "corrected" not in variant},

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Direction
 from seatrial.core.values import Array, InputError, Record, spelling_hint
 from seatrial.data.example_series import JET_VELOCITY, SENSOR_NOISE, SLEW_RATE
 from seatrial.estimation.information import directions
@@ -37,8 +36,6 @@ from seatrial_studies.song2025.published import (
     CoefficientSet,
     ManoeuvreRun,
     PublishedManoeuvre,
-    drift_angle,
-    reference_record,
     replay_inputs,
     simulate_manoeuvre,
 )
@@ -59,8 +56,7 @@ class RunComparison:
         reference: the truth, helmsman in the loop.
         steered: the column's, helmsman in the loop, so that nozzle angles differ as in figures 4c and 7c.
         replayed: the column's on the reference's nozzle history; shorter than the reference where it diverges.
-        steered_accuracy, replayed_accuracy: over what reference and prediction have in common; None where one diverges.
-        largest_drift: of the replayed motion, deg.
+        replayed_accuracy: over what reference and prediction have in common; None where it diverges.
     """
 
     title: str
@@ -69,22 +65,7 @@ class RunComparison:
     reference: Record
     steered: ManoeuvreRun
     replayed: Record
-    steered_accuracy: Accuracy | None
     replayed_accuracy: Accuracy | None
-    largest_drift: float
-
-    @property
-    def divergence_time(self) -> float:
-        """Return the seconds after which the replayed motion leaves all bounds; infinite where it does not."""
-        return math.inf if len(self.replayed) == len(self.reference) else float(self.replayed.time[-1])
-
-
-def compare_runs(
-    coefficient_sets: Sequence[CoefficientSet], runs: Sequence[PublishedManoeuvre]
-) -> tuple[RunComparison, ...]:
-    """Compare every reading in every run: some 0.1 s each, 3 s where the consecutive zigzags are never finished."""
-    references = {run: reference_record(run) for run in runs}
-    return tuple(compare_run(reading, run, references[run]) for reading in coefficient_sets for run in runs)
 
 
 def compare_run(coefficient_set: CoefficientSet, run: PublishedManoeuvre, truth: Record) -> RunComparison:
@@ -102,9 +83,7 @@ def compare_craft(title: str, craft: Model, run: PublishedManoeuvre, truth: Reco
         truth,
         steered,
         again,
-        None if steered.record is None else prediction_accuracy(truth, steered.record),
         prediction_accuracy(truth, again) if len(again) == len(truth) else None,
-        float(np.max(np.abs(drift_angle(again)))),
     )
 
 
@@ -147,16 +126,12 @@ class Discrimination:
     """What accuracy sees of coefficients moved by 100 % along the weakest direction of the Fisher information.
 
     Attributes:
-        weakest_direction: the weakest of output error with the sensors' noise, with its standard deviation.
         changes: coefficient -> relative change of the moved craft.
         accuracy: of the moved craft on the same nozzle history, against the truth.
-        sensor_noise: channel -> the noise whose standard deviation the RMSE is to be compared with, SI units.
     """
 
-    weakest_direction: Direction
     changes: dict[str, float]
     accuracy: Accuracy
-    sensor_noise: dict[str, float]
 
     @property
     def changes_text(self) -> str:
@@ -178,7 +153,7 @@ def discrimination(series: Record) -> Discrimination:
     moved = {p.name: p.value + weakest.combination[p.name] * p.characteristic_scale for p in craft.parameters.free}
     changes = {p.name: moved[p.name] / p.value - 1.0 for p in craft.parameters.free}
     accuracy = prediction_accuracy(series, replay_inputs(craft.with_values(moved), series))
-    return Discrimination(weakest, changes, accuracy, {c: SENSOR_NOISE[c] for c in accuracy.cc})
+    return Discrimination(changes, accuracy)
 
 
 def fisher_information(craft: Model, record: Record) -> Array:

@@ -89,12 +89,6 @@ def printed_coefficients(column: Table2Column) -> dict[str, float]:
     return dict(zip(COEFFICIENTS, map(float, TABLE_2[column]), strict=True))
 
 
-def printed_differences(column: Table2Column) -> dict[str, float]:
-    """Relative differences of a column's printed values from the CFD column's, per cent, with their sign."""
-    true = printed_coefficients(Table2Column.CFD)
-    return {name: 100.0 * (value / true[name] - 1.0) for name, value in printed_coefficients(column).items()}
-
-
 # Craft models from the columns of table 2, as printed or corrected; their simulation; the misprinted equations.
 
 FINISHED = "finished"

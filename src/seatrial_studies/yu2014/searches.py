@@ -510,8 +510,8 @@ class JointOptimum:
         gains: (3,), of the least larger one of roll and fin-rate variance over the paper's in the worst condition, Ms
             within 2 or the paper's own where that is larger.
         ratios: roll, fin and fin-rate variance over the paper's in each condition, (6, 3); Ms, published_Ms: (6,).
-        genetic_gains: the published search on the means of its objectives over the six, by seed (n, 3).
-        genetic_ratios: their roll, fin and fin-rate variance over the paper's, (n, 6, 3); genetic_Ms: worst (n,).
+        genetic_ratios: roll, fin and fin-rate variance over the paper's of the published search on the means of its
+            objectives over the six, by seed (n, 6, 3); genetic_Ms: worst (n,).
     """
 
     preamplifier: Preamplifier
@@ -519,7 +519,6 @@ class JointOptimum:
     ratios: Array
     Ms: Array
     published_Ms: Array
-    genetic_gains: Array
     genetic_ratios: Array
     genetic_Ms: Array
 
@@ -556,15 +555,13 @@ def joint_optimum(preamplifier: Preamplifier, seeds: int, seed: int) -> JointOpt
     gains = search(evolution, worst).point
     ratios, Ms = _judge(seas, paper_variances, gains[None])
     runs = [_genetic(seas, np.random.default_rng([seed, 9, k])) for k in range(seeds)]
-    answers = np.stack([run.gains for run in runs])
-    seen, peaks = _judge(seas, paper_variances, answers)
+    seen, peaks = _judge(seas, paper_variances, np.stack([run.gains for run in runs]))
     return JointOptimum(
         preamplifier,
         gains,
         ratios[0],
         Ms[0],
         np.array([float(p.Ms[0]) for p in paper]),
-        answers,
         seen,
         peaks.max(axis=1),
     )
