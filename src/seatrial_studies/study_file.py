@@ -41,7 +41,7 @@ class Listing(Declared):
     join: str = "; "
 
 
-class Row(Declared):
+class PageRow(Declared):
     """A row of the page.
 
     Attributes:
@@ -63,7 +63,7 @@ class Case(Declared):
     setting: str = ""
 
 
-class ClaimRow(Row):
+class ClaimRow(PageRow):
     """A statement of the paper with its section, what the numbers say to it, and its rule: the first case that holds.
 
     comment: why the rule is what it is; not on the page.
@@ -82,7 +82,7 @@ class ClaimRow(Row):
         return self
 
 
-class CheckRow(Row):
+class CheckRow(PageRow):
     """A number of ours with its limit: `at_most`, `at_least`, `between`, or a fact that `holds`, its limit in words."""
 
     name: str
@@ -102,13 +102,13 @@ class CheckRow(Row):
         return self
 
 
-class AnswerRow(Row):
+class AnswerRow(PageRow):
     """A sentence of the answer."""
 
     wording: str
 
 
-class TableRow(Row):
+class TableRow(PageRow):
     """A table: `rows` are wordings, before those that its evidence computes; `declarations`: the four stand here."""
 
     title: str = ""
@@ -119,7 +119,7 @@ class TableRow(Row):
     declarations: bool = False
 
 
-class FigureRow(Row):
+class FigureRow(PageRow):
     """A figure: curves over axes with labels, bars with their unit, or a matrix, as its evidence computes it."""
 
     title: str
@@ -166,8 +166,8 @@ class StudyFile(Declared):
 
     def missing_counterparts(self, titles: list[str]) -> tuple[str, ...]:
         """Return the counterparts that are not among the titles of a page's tables and figures."""
-        shown = (title for *_, here in self.paper_figures if isinstance(here, tuple) for title in here)
-        return tuple(title for title in shown if title not in titles)
+        counterparts = (title for *_, here in self.paper_figures if isinstance(here, tuple) for title in here)
+        return tuple(title for title in counterparts if title not in titles)
 
 
 def parse_study(text: str, place: str) -> StudyFile:

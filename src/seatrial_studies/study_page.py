@@ -27,7 +27,7 @@ from seatrial_studies.study_file import (
     Conditions,
     FigureRow,
     Listing,
-    Row,
+    PageRow,
     StudyFile,
     TableRow,
     read_study,
@@ -38,6 +38,7 @@ EvidenceT = TypeVar("EvidenceT")
 Facts = Mapping[str, Any]
 """What a function of a study finds, by name; tables take `rows` from it, figures what they draw."""
 FactFunction = Callable[[EvidenceT], Facts | Sequence[Facts]]
+FoundT = TypeVar("FoundT", bound=Facts | Sequence[Facts])
 
 _RELATIONS = {"at most": np.less_equal, "at least": np.greater_equal, "below": np.less, "above": np.greater}
 _JOINTS = {"": "/", "to": " to ", "and": " and ", ",": ", ", ";": "; "}
@@ -60,7 +61,7 @@ class FactTable(Generic[EvidenceT]):
 
     functions: dict[str, FactFunction[EvidenceT]] = field(default_factory=dict)
 
-    def declare(self, function: FactFunction[EvidenceT]) -> FactFunction[EvidenceT]:
+    def declare(self, function: Callable[[EvidenceT], FoundT]) -> Callable[[EvidenceT], FoundT]:
         """Enter a function under its name.
 
         Raises:
@@ -145,10 +146,10 @@ def _limit(limit: float | str, facts: Facts) -> float:
 
 def _with_phrases(phrases: Mapping[str, Choice | Listing | str], facts: dict[str, Any]) -> dict[str, Any]:
     """Return the facts and the phrases made of them, each of those before it."""
-    made = dict(facts)
+    extended = dict(facts)
     for name, phrase in phrases.items():
-        made = _merged((made, {name: _phrase(phrase, made)}))
-    return made
+        extended = _merged((extended, {name: _phrase(phrase, extended)}))
+    return extended
 
 
 def _phrase(phrase: Choice | Listing | str, facts: Facts) -> str:
@@ -173,7 +174,7 @@ class StudyPage(Generic[EvidenceT]):
         (facts,) = self._computed(self.file.evidence)
         return _with_phrases(shared_phrases() | self.file.phrases, {**self.file.limits, **facts})
 
-    def facts_of(self, row: Row) -> Iterator[Facts]:
+    def facts_of(self, row: PageRow) -> Iterator[Facts]:
         """Return the facts for each time that the row stands on the page."""
         keys = (row.evidence,) if isinstance(row.evidence, str) else row.evidence
         for computed in self._computed(keys):
@@ -183,8 +184,8 @@ class StudyPage(Generic[EvidenceT]):
 
     def _computed(self, keys: Sequence[str]) -> Iterator[dict[str, Any]]:
         """Return each combination of the groups of facts that the functions of these keys give."""
-        found = [self.fact_table.functions[key](self.evidence) for key in keys]
-        groups = [[facts] if isinstance(facts, Mapping) else facts for facts in found]
+        results = [self.fact_table.functions[key](self.evidence) for key in keys]
+        groups = [[facts] if isinstance(facts, Mapping) else facts for facts in results]
         return (_merged(group) for group in itertools.product(*groups))
 
     def claims(self) -> tuple[Claim, ...]:
@@ -219,12 +220,12 @@ def _merged(groups: Iterable[Facts]) -> dict[str, Any]:
     Raises:
         InputError: two give a fact of the same name.
     """
-    made: dict[str, Any] = {}
+    merged: dict[str, Any] = {}
     for facts in groups:
-        if twice := sorted(made.keys() & facts.keys() - {"rows"}):
+        if twice := sorted(merged.keys() & facts.keys() - {"rows"}):
             raise InputError(f"two functions give the fact '{twice[0]}' to one row; rename it in one of them")
-        made |= facts
-    return made
+        merged |= facts
+    return merged
 
 
 def declaration_tables(file: StudyFile, note: str) -> list[Table]:

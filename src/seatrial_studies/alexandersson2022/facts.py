@@ -64,15 +64,15 @@ def turns(reproduction: BenchmarkReproduction) -> Facts:
 @FACTS.declare
 def turned(reproduction: BenchmarkReproduction) -> list[Facts]:
     """Each measure of each turn against the published range, widened by the paper's own largest error."""
-    made = []
+    groups = []
     for side in SIDES:
         for field, measure in MEASURES.items():
             size, (lower, upper) = float(getattr(reproduction.turns[side], field)), published_range(field)
             inside = math.isfinite(size) and lower <= size <= upper
-            made.append(
+            groups.append(
                 {"side": side, "measure": measure, "size": size, "lower": lower, "upper": upper, "is_inside": inside}
             )
-    return made
+    return groups
 
 
 @FACTS.declare
@@ -92,12 +92,12 @@ def turn_rows(reproduction: BenchmarkReproduction) -> Facts:
 def noise(reproduction: BenchmarkReproduction) -> Facts:
     """Noise from sample to sample beside what the model leaves."""
     rows, ratios = [], []
-    for left in reproduction.fit.channel_noise:
-        if left.channel in reproduction.noise_levels:
-            factor, unit = display_unit(NOTATION[left.channel].unit)
-            sample = reproduction.noise_levels[left.channel]
-            ratio = left.standard_deviation / sample if sample > 0 else None
-            rows.append((f"{left.channel} [{unit}]", factor * sample, factor * left.standard_deviation, ratio))
+    for residual in reproduction.fit.channel_noise:
+        if residual.channel in reproduction.noise_levels:
+            factor, unit = display_unit(NOTATION[residual.channel].unit)
+            sample = reproduction.noise_levels[residual.channel]
+            ratio = residual.standard_deviation / sample if sample > 0 else None
+            rows.append((f"{residual.channel} [{unit}]", factor * sample, factor * residual.standard_deviation, ratio))
             ratios += [ratio] if ratio else []
     return {"rows": rows, "least_ratio": min(ratios, default=0.0)}
 
@@ -159,26 +159,26 @@ def intervals(reproduction: BenchmarkReproduction) -> Facts:
     return {
         "interval_kinds": [
             {
-                "how": how,
-                "inside": sum(m.contains_measured for m in made),
-                "count": len(made),
-                "widest": max(m.half_width for m in made),
-                "farthest": max(m.relative_deviation for m in made),
+                "how": kind,
+                "inside": sum(m.contains_measured for m in turn_intervals),
+                "count": len(turn_intervals),
+                "widest": max(m.half_width for m in turn_intervals),
+                "farthest": max(m.relative_deviation for m in turn_intervals),
             }
-            for how, made in kinds
-            if made
+            for kind, turn_intervals in kinds
+            if turn_intervals
         ],
         "rows": [
-            _interval_row(m, how)
-            for how, made in (("one-step jackknife", plain), ("jackknife, tied models", tied))
-            for m in made
+            _interval_row(m, kind)
+            for kind, turn_intervals in (("one-step jackknife", plain), ("jackknife, tied models", tied))
+            for m in turn_intervals
         ],
     }
 
 
-def _interval_row(m: TurnInterval, how: str) -> tuple[str | float, ...]:
+def _interval_row(m: TurnInterval, kind: str) -> tuple[str | float, ...]:
     inside = "inside" if m.contains_measured else "outside"
-    return f"{m.measure}, {m.side}", how, m.lower, m.upper, m.half_width, m.measured, inside
+    return f"{m.measure}, {m.side}", kind, m.lower, m.upper, m.half_width, m.measured, inside
 
 
 @FACTS.declare
@@ -187,9 +187,9 @@ def half_widths(reproduction: BenchmarkReproduction) -> list[Facts]:
     coverage = reproduction.coverage
     kinds = (("", coverage.turn_intervals), (", with tied models", coverage.tied_turn_intervals))
     return [
-        {"side": f"{m.side}{how}", "half_width": m.half_width}
-        for how, made in kinds
-        for m in made
+        {"side": f"{m.side}{suffix}", "half_width": m.half_width}
+        for suffix, turn_intervals in kinds
+        for m in turn_intervals
         if m.measure == MEASURES["diameter"]
     ]
 
@@ -199,16 +199,16 @@ def shares(reproduction: BenchmarkReproduction) -> Facts:
     """Shares of samples inside their bands, runs left out and held out."""
     coverage = reproduction.coverage
     held = statistics.fmean(c.shares["psi"] for c in coverage.held_out_coverage)
-    left, held_out = (
-        [(c.run, c.windows, *(100.0 * c.shares[s] for s in ("psi", "x0", "y0"))) for c in made]
-        for made in (coverage.left_out_coverage, coverage.held_out_coverage)
+    left_out_rows, held_out = (
+        [(c.run, c.windows, *(100.0 * c.shares[s] for s in ("psi", "x0", "y0"))) for c in coverages]
+        for coverages in (coverage.left_out_coverage, coverage.held_out_coverage)
     )
     mean = ("mean of the runs left out", None, 100.0 * coverage.heading_share, None, None)
     return {
         "left_out_share": coverage.heading_share,
         "held_out_share": held,
         "is_held": held >= HELD_OUT_SHARE,
-        "rows": [*left, mean, *held_out],
+        "rows": [*left_out_rows, mean, *held_out],
     }
 
 
@@ -241,12 +241,12 @@ def offsets(reproduction: BenchmarkReproduction) -> Facts:
 @FACTS.declare
 def labels(reproduction: BenchmarkReproduction) -> Facts:
     """What the checks find in the runs when the columns are declared as the headers name them."""
-    found = reproduction.label_findings.values()
-    codes = [{f.code for f in findings} for findings in found]
-    count = Counter(f.code for findings in found for f in findings)
-    example = next((findings for findings in found if findings), ())
+    by_run = reproduction.label_findings.values()
+    codes = [{f.code for f in findings} for findings in by_run]
+    count = Counter(f.code for findings in by_run for f in findings)
+    example = next((findings for findings in by_run if findings), ())
     return {
-        "label_runs": len(found),
+        "label_runs": len(by_run),
         "in_every_run": bool(codes) and all(run >= {_WRONG_FRAME, _MISLABELLED} for run in codes),
         "wrong_frame": count[_WRONG_FRAME],
         "mislabelled": count[_MISLABELLED],

@@ -44,15 +44,15 @@ _BASE_METHOD = "PSO by eq. (4), the base method"
 @FACTS.declare
 def searches(evidence: CloudSwarmEvidence) -> Facts:
     """What every row may name: runs, and errors, stuck runs and iterations needed of each swarm."""
-    made = evidence.reproduction
+    reproduction = evidence.reproduction
     swarms = {
         "cloud": evidence.off_centre(ICPSO),
         "plain": evidence.off_centre(PSO),
-        "printed": made.unweighted_searches,
-        "steady": made.of_variant(CloudVariant.STEADY_WEIGHT),
-        "unmutated": made.of_variant(CloudVariant.NO_MUTATION),
+        "printed": reproduction.unweighted_searches,
+        "steady": reproduction.of_variant(CloudVariant.STEADY_WEIGHT),
+        "unmutated": reproduction.of_variant(CloudVariant.NO_MUTATION),
     }
-    described = {name: _swarm(evidence, of) for name, of in swarms.items()}
+    described = {name: _swarm(evidence, swarm) for name, swarm in swarms.items()}
     cloud, plain = (described[name]["needed"] for name in ("cloud", "plain"))
     printed, weighted = swarms["printed"], swarms["cloud"]
     return {
@@ -66,20 +66,20 @@ def searches(evidence: CloudSwarmEvidence) -> Facts:
         "smaller_by_chance": [
             f"{h}°" for h in HEADINGS if np.mean(printed[h].mean_error) < np.mean(weighted[h].mean_error)
         ],
-        "runs": made.run_count,
-        "iterations": made.iterations,
+        "runs": reproduction.run_count,
+        "iterations": reproduction.iterations,
         "whole_runs": RUNS,
         "whole_iterations": ITERATIONS,
-        "is_quick": (made.run_count, made.iterations) != (RUNS, ITERATIONS),
+        "is_quick": (reproduction.run_count, reproduction.iterations) != (RUNS, ITERATIONS),
     }
 
 
-def _swarm(evidence: CloudSwarmEvidence, of: Mapping[int, RepeatedSearches]) -> Facts:
-    needed = evidence.iterations_needed(of)
+def _swarm(evidence: CloudSwarmEvidence, swarm: Mapping[int, RepeatedSearches]) -> Facts:
+    needed = evidence.iterations_needed(swarm)
     median = float(np.median(needed))
     return {
-        "errors": [float(np.mean(f.mean_error)) for f in of.values()],
-        "stuck": int(evidence.is_stuck(of).sum()),
+        "errors": [float(np.mean(f.mean_error)) for f in swarm.values()],
+        "stuck": int(evidence.is_stuck(swarm).sum()),
         "needed": needed,
         "median": f"{median:.0f}" if np.isfinite(median) else "never",
     }
@@ -107,10 +107,10 @@ def accuracy(evidence: CloudSwarmEvidence) -> Facts:
 @FACTS.declare
 def weight(evidence: CloudSwarmEvidence) -> Facts:
     """What the printed constants let the cloud do to the inertia weight."""
-    settings, found = CloudSettings(), evidence.cloud_weight
-    at_A, at_B = found.at_ends
-    low, high = found.central
-    below, within, above = found.band_shares
+    settings, cloud = CloudSettings(), evidence.cloud_weight
+    at_A, at_B = cloud.at_ends
+    low, high = cloud.central
+    below, within, above = cloud.band_shares
     return {
         "settings": settings,
         "expectation": 5 * settings.w1 - settings.w2,
@@ -119,8 +119,8 @@ def weight(evidence: CloudSwarmEvidence) -> Facts:
         "used": abs(at_A - at_B) / (settings.w1 - settings.w2),
         "low": low,
         "high": high,
-        "mean": found.mean,
-        "deviation": found.deviation,
+        "mean": cloud.mean,
+        "deviation": cloud.deviation,
         "below": below,
         "within": within,
         "above": above,
@@ -161,9 +161,10 @@ def final_fitness(evidence: CloudSwarmEvidence) -> Facts:
 @FACTS.declare
 def errors_by_iterations(evidence: CloudSwarmEvidence) -> Facts:
     """Mean errors of ICPSO off centre over the headings, per cent, by its iterations, with noise and without."""
-    made = evidence.reproduction
-    whole = {(made.iterations, h): found for h, found in evidence.off_centre(ICPSO).items()}
-    noisy, quiet = (_mean_errors(of) for of in ({**made.shorter_searches, **whole}, made.noise_free_searches))
+    reproduction = evidence.reproduction
+    longest = {(reproduction.iterations, h): swarm for h, swarm in evidence.off_centre(ICPSO).items()}
+    noisy = _mean_errors({**reproduction.shorter_searches, **longest})
+    quiet = _mean_errors(reproduction.noise_free_searches)
     return {
         "noisy_errors": noisy,
         "quiet_errors": quiet,
@@ -172,9 +173,9 @@ def errors_by_iterations(evidence: CloudSwarmEvidence) -> Facts:
     }
 
 
-def _mean_errors(of: Mapping[tuple[int, int], RepeatedSearches]) -> list[Facts]:
-    numbers = sorted({iterations for iterations, _ in of})
-    means = {n: 100.0 * float(np.mean([of[n, h].mean_error for h in HEADINGS])) for n in numbers}
+def _mean_errors(by_iterations: Mapping[tuple[int, int], RepeatedSearches]) -> list[Facts]:
+    numbers = sorted({iterations for iterations, _ in by_iterations})
+    means = {n: 100.0 * float(np.mean([by_iterations[n, h].mean_error for h in HEADINGS])) for n in numbers}
     return [{"iterations": n, "error": error} for n, error in means.items()]
 
 
@@ -190,13 +191,13 @@ def unknowns(evidence: CloudSwarmEvidence) -> Facts:
 @FACTS.declare
 def undetected(evidence: CloudSwarmEvidence) -> Facts:
     """Coefficients far off whose motion follows the record."""
-    found = evidence.undetected_change
-    wrong = np.abs(found.relative_change)
+    change = evidence.undetected_change
+    wrong = np.abs(change.relative_change)
     return {
         "largest": float(wrong.max()),
         "worst": COEFFICIENTS[int(np.argmax(wrong))],
-        "heave_cm": 100.0 * found.heave_rms,
-        "pitch_deg": found.pitch_rms,
+        "heave_cm": 100.0 * change.heave_rms,
+        "pitch_deg": change.pitch_rms,
         "heave_noise_cm": 100.0 * HEAVE_NOISE,
         "pitch_noise_deg": float(np.degrees(PITCH_NOISE)),
     }
@@ -216,18 +217,18 @@ def controllers(evidence: CloudSwarmEvidence) -> Facts:
 @FACTS.declare
 def coefficients(evidence: CloudSwarmEvidence) -> list[Facts]:
     """Truth, what ICPSO finds in both boxes, and our errors beside the Cramer-Rao bound, at each heading."""
-    made = []
+    groups = []
     for heading in HEADINGS:
-        found, narrow = (evidence.reproduction.searches[box, heading, ICPSO] for box in BoxPlacement)
-        own = evidence.output_error[heading]
+        wide, narrow = (evidence.reproduction.searches[box, heading, ICPSO] for box in BoxPlacement)
+        fit = evidence.output_error[heading]
         columns = (
-            np.abs(found.truth), np.abs(found.points.mean(axis=0)), 100.0 * found.mean_error,
-            100.0 * narrow.mean_error, 100.0 * np.abs(own.noisy_errors).mean(axis=0),
-            100.0 * own.cramer_rao_bound.mean(axis=0),
+            np.abs(wide.truth), np.abs(wide.points.mean(axis=0)), 100.0 * wide.mean_error,
+            100.0 * narrow.mean_error, 100.0 * np.abs(fit.noisy_errors).mean(axis=0),
+            100.0 * fit.cramer_rao_bound.mean(axis=0),
         )  # fmt: skip
         rows = zip(COEFFICIENTS, *(column.tolist() for column in columns), strict=True)
-        made.append({"heading": heading, "rows": list(rows)})
-    return made
+        groups.append({"heading": heading, "rows": list(rows)})
+    return groups
 
 
 @FACTS.declare
@@ -246,10 +247,10 @@ def mean_errors(evidence: CloudSwarmEvidence) -> Facts:
 def convergence(evidence: CloudSwarmEvidence) -> Facts:
     """Iterations that each swarm needs, medians at each heading."""
     rows = []
-    for name, of in _swarms(evidence, with_variants=True).items():
-        needed = evidence.iterations_needed(of)
+    for name, swarm in _swarms(evidence, with_variants=True).items():
+        needed = evidence.iterations_needed(swarm)
         cells = [int(median) if np.isfinite(median) else None for median in np.median(needed, axis=1)]
-        error = 100.0 * float(np.mean([f.mean_error for f in of.values()]))
+        error = 100.0 * float(np.mean([f.mean_error for f in swarm.values()]))
         rows.append((name, *cells, int(np.sum(~np.isfinite(needed))), error))
     return {"rows": rows}
 
@@ -278,7 +279,7 @@ def motions(evidence: CloudSwarmEvidence) -> list[Facts]:
     A, B = candidate_matrices(evidence.off_centre(ICPSO)[FIGURE_HEADING].points[:1])
     identified = trajectories(A, B, data.forcing, np.zeros(4))[0]
     samples = np.arange(len(identified), dtype=np.float64)
-    drawn = (("Figure 2: heave", "cm", 100.0), ("Figure 3: pitch", "deg", float(np.degrees(1.0))))
+    labels = (("Figure 2: heave", "cm", 100.0), ("Figure 3: pitch", "deg", float(np.degrees(1.0))))
     return [
         {
             "title": title,
@@ -288,7 +289,7 @@ def motions(evidence: CloudSwarmEvidence) -> list[Facts]:
                 Curve("identified", samples, -factor * identified[:, j]),
             ),
         }
-        for j, (title, unit, factor) in enumerate(drawn)
+        for j, (title, unit, factor) in enumerate(labels)
     ]
 
 
@@ -296,23 +297,23 @@ def motions(evidence: CloudSwarmEvidence) -> list[Facts]:
 def convergence_curves(evidence: CloudSwarmEvidence) -> Facts:
     """Excess of each swarm's fitness over iterations, and what the noise explains."""
     swarms = _swarms(evidence, with_variants=False)
-    excess = {name: _median_excess(evidence, of)[:_DRAWN_ITERATIONS] for name, of in swarms.items()}
-    drawn = min(_DRAWN_ITERATIONS, evidence.reproduction.iterations)
-    excess["within noise"] = np.full(drawn, evidence.noise_allowance)
+    excess = {name: _median_excess(evidence, swarm)[:_DRAWN_ITERATIONS] for name, swarm in swarms.items()}
+    count = min(_DRAWN_ITERATIONS, evidence.reproduction.iterations)
+    excess["within noise"] = np.full(count, evidence.noise_allowance)
     curves = [Curve(name, np.arange(len(e), dtype=np.float64), np.log10(e)) for name, e in excess.items()]
     return {"curves": curves, "drawn_iterations": _DRAWN_ITERATIONS}
 
 
-def _median_excess(evidence: CloudSwarmEvidence, of: Mapping[int, RepeatedSearches]) -> Array:
-    excess = np.concatenate([evidence.reproduction.excess_fitness(h, of[h]) for h in HEADINGS])
+def _median_excess(evidence: CloudSwarmEvidence, swarm: Mapping[int, RepeatedSearches]) -> Array:
+    excess = np.concatenate([evidence.reproduction.excess_fitness(h, swarm[h]) for h in HEADINGS])
     return np.maximum(np.median(excess, axis=0), _LEAST_EXCESS)
 
 
 @FACTS.declare
 def histories(evidence: CloudSwarmEvidence) -> Facts:
     """Errors of five coefficients over the iterations of the first run."""
-    found = evidence.off_centre(ICPSO)[FIGURE_HEADING]
-    iterations = np.arange(len(found.trace), dtype=np.float64)
-    errors = 100.0 * (found.trace / found.truth - 1.0)
+    swarm = evidence.off_centre(ICPSO)[FIGURE_HEADING]
+    iterations = np.arange(len(swarm.trace), dtype=np.float64)
+    errors = 100.0 * (swarm.trace / swarm.truth - 1.0)
     names = ("a33", "a55", "b33", "b55", "b53")
     return {"curves": [Curve(n, iterations, errors[:, COEFFICIENTS.index(n)]) for n in names]}

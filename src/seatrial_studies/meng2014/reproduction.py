@@ -1,6 +1,6 @@
 """The paper's searches made again, and what they and the records show of the coefficients."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum, StrEnum
 from functools import partial
@@ -324,12 +324,12 @@ class CloudSwarmEvidence:
         """
         return 0.5 / self.reproduction.seas[HEADINGS[0]][0].measured.size
 
-    def is_stuck(self, searches: dict[int, RepeatedSearches]) -> NDArray[np.bool_]:
+    def is_stuck(self, searches: Mapping[int, RepeatedSearches]) -> NDArray[np.bool_]:
         """Runs off centre that end above the better fitness of both swarms by more than noise, (headings, runs)."""
         ends = [self.reproduction.excess_fitness(h, found)[:, -1] for h, found in searches.items()]
         return np.array(ends) > self.noise_allowance
 
-    def iterations_needed(self, searches: dict[int, RepeatedSearches]) -> Array:
+    def iterations_needed(self, searches: Mapping[int, RepeatedSearches]) -> Array:
         """Return the iteration at which runs reach that fitness within noise, (headings, runs); infinite if never."""
         excess = np.array([self.reproduction.excess_fitness(h, found) for h, found in searches.items()])
         reached = excess <= self.noise_allowance

@@ -60,40 +60,40 @@ _HISTORY_PAIRS = {
 @FACTS.declare
 def searches(evidence: WildHorseEvidence) -> Facts:
     """What every row may name of the searches: errors, per cent, and runs by setting, work by algorithm."""
-    made = evidence.reproduction
-    single = {s.name: {a: evidence.single_run_errors(s, a) for a in SearchAlgorithm} for s in made.settings}
-    scatter = {s.name: {a: evidence.scatter(s, a) for a in SearchAlgorithm} for s in made.settings}
-    ratios = {name: {a: np.divide(of[a], of[IWHO]) for a in (PSO, WHO)} for name, of in single.items()}
+    reproduction = evidence.reproduction
+    single = {s.name: {a: evidence.single_run_errors(s, a) for a in SearchAlgorithm} for s in reproduction.settings}
+    scatter = {s.name: {a: evidence.scatter(s, a) for a in SearchAlgorithm} for s in reproduction.settings}
+    ratios = {name: {a: np.divide(errors[a], errors[IWHO]) for a in (PSO, WHO)} for name, errors in single.items()}
     off_centre, paper = single["WHOLE_OFF_CENTRE"], single["PAPER"]
     return {
         "single": single,
-        "largest_single": {name: max(of[IWHO]) for name, of in single.items()},
-        "of_mean": {s.name: {a: evidence.errors_of_mean(s, a) for a in SearchAlgorithm} for s in made.settings},
+        "largest_single": {name: max(errors[IWHO]) for name, errors in single.items()},
+        "of_mean": {s.name: {a: evidence.errors_of_mean(s, a) for a in SearchAlgorithm} for s in reproduction.settings},
         "scatter": scatter,
         "is_steadiest": {
-            name: np.all(np.array(of[IWHO]) == np.min([*of.values()], axis=0)) for name, of in scatter.items()
+            name: np.all(each[IWHO] == np.min([*each.values()], axis=0)) for name, each in scatter.items()
         },
-        "who_over_iwho": {name: of[WHO] for name, of in ratios.items()},
-        "pso_over_iwho": {name: of[PSO] for name, of in ratios.items()},
+        "who_over_iwho": {name: errors[WHO] for name, errors in ratios.items()},
+        "pso_over_iwho": {name: errors[PSO] for name, errors in ratios.items()},
         "who_better": sum(w < i for w, i in zip(off_centre[WHO], off_centre[IWHO], strict=True)),
         "pso_worse": [f"{h}°" for h, p, w in zip(HEADINGS, paper[PSO], paper[WHO], strict=True) if p > w],
         "headings": len(HEADINGS),
-        "runs": {s.name: evidence.run_count(s) for s in made.settings},
-        "run_count": made.run_count,
-        "median_tens": [100.0 * float(np.median(runs.tens)) for runs in made.ten_runs.values()],
-        "repeats": len(next(iter(made.ten_runs.values())).tens),
+        "runs": {s.name: evidence.run_count(s) for s in reproduction.settings},
+        "run_count": reproduction.run_count,
+        "median_tens": [100.0 * float(np.median(runs.tens)) for runs in reproduction.ten_runs.values()],
+        "repeats": len(next(iter(reproduction.ten_runs.values())).tens),
         "judged": {a: evidence.evaluations(a) for a in SearchAlgorithm},
         "whole_record_steps": simulated_steps(evidence.evaluations(IWHO), has_slopes=False),
         "search_iterations": ITERATIONS,
         "search_seconds": ITERATIONS * STEP,
         "first_iterations": FIRST_ITERATIONS,
         "paper_setting": PAPER.value,
-        "is_quick": made.is_quick,
+        "is_quick": reproduction.is_quick,
         "quick_runs": QUICK_RUNS,
         "whole_runs": RUNS,
         "whole_repeats": TEN_RUN_REPEATS,
         "ten_run_settings": [s.value for s in TEN_RUN_SETTINGS],
-        "absent": [s.value for s in SearchSetting if s not in made.settings],
+        "absent": [s.value for s in SearchSetting if s not in reproduction.settings],
         "drawn": BOOTSTRAP_TENS,
         "family": FAMILY_PROBABILITY,
         "rarity": 100.0 * FAMILY_PROBABILITY / len(HEADINGS),
@@ -120,10 +120,10 @@ def print_(evidence: WildHorseEvidence) -> Facts:
 @FACTS.declare
 def fits(evidence: WildHorseEvidence) -> Facts:
     """What every row may name of our own fits."""
-    found, evaluations = evidence.output_error.values(), evidence.output_error_evaluations
+    fit_results, evaluations = evidence.output_error.values(), evidence.output_error_evaluations
     return {
-        "worst_fit": max(float(np.max(np.abs(o.noise_free_errors))) for o in found),
-        "noisy_fits": [100.0 * float(np.mean(np.abs(o.noisy_errors))) for o in found],
+        "worst_fit": max(float(np.max(np.abs(o.noise_free_errors))) for o in fit_results),
+        "noisy_fits": [100.0 * float(np.mean(np.abs(o.noisy_errors))) for o in fit_results],
         "bound_ratio": evidence.bound_ratio,
         "fit_evaluations": evaluations,
         "fit_steps": simulated_steps(evaluations, has_slopes=True),
@@ -166,7 +166,7 @@ def controllers(evidence: WildHorseEvidence) -> Facts:
     """What controllers cost that are tuned on printed coefficients and on ours."""
     costs = evidence.controllers
     return {
-        "rows": controller_rows({f"{h}°": of for h, of in costs.items()}),
+        "rows": controller_rows({f"{h}°": each for h, each in costs.items()}),
         "printed": largest_excess(costs, lambda method: method.endswith("printed") and "b53" not in method),
         "ours": largest_excess(costs, lambda method: method.startswith("ours")),
         "idle": uncontrolled_excess(costs),
@@ -176,11 +176,11 @@ def controllers(evidence: WildHorseEvidence) -> Facts:
 @FACTS.declare
 def largest_means(evidence: WildHorseEvidence) -> Facts:
     """The largest errors of WHO's means of ten in both boxes, and its printed ones above 10 %."""
-    made = evidence.reproduction.searches
+    by_setting = evidence.reproduction.searches
     printed = np.concatenate([printed_error(h, WHO) for h in HEADINGS])
     return {
         "largest_mean": {
-            s.name: max(float(np.max(made[s, h, WHO].error_of_mean)) for h in HEADINGS) for s in (PAPER, OFF_CENTRE)
+            s.name: float(np.max([by_setting[s, h, WHO].error_of_mean for h in HEADINGS])) for s in (PAPER, OFF_CENTRE)
         },
         "above_ten": int(np.sum(printed > 10.0)),
         "above_ten_of": printed.size,
@@ -302,10 +302,10 @@ def hold(evidence: WildHorseEvidence) -> Facts:
 @FACTS.declare
 def one_sample(evidence: WildHorseEvidence) -> Facts:
     """What one step of two motions identifies, and where a search by samples ends off centre."""
-    found = evidence.reproduction.searches[OFF_CENTRE, HEADINGS[0], IWHO]
-    off = float(np.mean(np.abs(found.errors[0])))
+    searched = evidence.reproduction.searches[OFF_CENTRE, HEADINGS[0], IWHO]
+    off = float(np.mean(np.abs(searched.errors[0])))
     rank = evidence.audit.step_rank
-    return {"rank": rank, "unknowns": len(COEFFICIENTS), "fitness": found.best_fitness[-1], "off": off}
+    return {"rank": rank, "unknowns": len(COEFFICIENTS), "fitness": searched.best_fitness[-1], "off": off}
 
 
 @FACTS.declare
@@ -329,25 +329,25 @@ def work(evidence: WildHorseEvidence) -> Facts:
 @FACTS.declare
 def tracking(evidence: WildHorseEvidence) -> Facts:
     """Errors of the models that are carried on, shares of the rms of heave and pitch, medians over the runs."""
-    made = evidence.tracking
+    models = evidence.tracking
     return {
-        "own": made.median_error(FIGURE_HEADING, IWHO),
-        "guess": made.guess_errors,
-        "lag": 1.0 / float(made.lag_gain.max()),
+        "own": models.median_error(FIGURE_HEADING, IWHO),
+        "guess": models.guess_errors,
+        "lag": 1.0 / float(models.lag_gain.max()),
         "by_heading": [
-            {"heading": h, "error": {a: made.median_error(h, a) for a in SearchAlgorithm}}
+            {"heading": h, "error": {a: models.median_error(h, a) for a in SearchAlgorithm}}
             for h in (FIGURE_HEADING, *HEADINGS)
         ],
-        "is_best_in_tables": made.is_most_accurate(HEADINGS),
-        "is_best_at_45": made.is_most_accurate((FIGURE_HEADING,)),
+        "is_best_in_tables": models.is_most_accurate(HEADINGS),
+        "is_best_at_45": models.is_most_accurate((FIGURE_HEADING,)),
     }
 
 
 @FACTS.declare
 def convergence(evidence: WildHorseEvidence) -> Facts:
     """How near the values are to the truth at 50 and at 100 s at 45 degrees."""
-    found = evidence.reproduction.searches[PAPER, FIGURE_HEADING, IWHO]
-    errors = 100.0 * np.abs(found.traces / found.truth - 1.0)
+    searched = evidence.reproduction.searches[PAPER, FIGURE_HEADING, IWHO]
+    errors = 100.0 * np.abs(searched.traces / searched.truth - 1.0)
     half, end = (errors[:, min(round(t / STEP), errors.shape[1] - 1)] for t in (50.0, ITERATIONS * STEP))
     near_half, near_end = (float(np.mean(e <= 1.5)) for e in (half, end))
     return {
@@ -363,7 +363,7 @@ def convergence(evidence: WildHorseEvidence) -> Facts:
 @FACTS.declare
 def ten_runs(evidence: WildHorseEvidence) -> list[Facts]:
     """The ten runs made again, at each heading: the limit lets chance alone fail one check in twenty studies."""
-    made = zip(evidence.reproduction.ten_runs.items(), printed_mean_errors(), strict=True)
+    each_ten = zip(evidence.reproduction.ten_runs.items(), printed_mean_errors(), strict=True)
     return [
         {
             "heading": heading,
@@ -374,7 +374,7 @@ def ten_runs(evidence: WildHorseEvidence) -> list[Facts]:
             "likely": 100.0 * runs.probability_below(0.01 * printed),
             "limit": runs.limit_on_median(printed, len(HEADINGS)),
         }
-        for (heading, runs), printed in made
+        for (heading, runs), printed in each_ten
     ]
 
 
@@ -412,36 +412,36 @@ def below_printed(evidence: WildHorseEvidence) -> Facts:
         for h, o in evidence.output_error.items()
     }
     total = [sum(column) for column in zip(*counts.values(), strict=True)]
-    rows = [*((f"{h}°", *of) for h, of in counts.items()), ("of 24", *total)]
+    rows = [*((f"{h}°", *below) for h, below in counts.items()), ("of 24", *total)]
     return {"rows": rows, "below": total[0], "are_all_below": total[0] == 24}
 
 
 @FACTS.declare
 def coefficients(evidence: WildHorseEvidence) -> list[Facts]:
     """Printed estimates and the means of the runs here, at each heading."""
-    made = []
+    groups = []
     for number, heading in enumerate(HEADINGS, start=2):
         columns = [true_values(heading)]
         for a in SearchAlgorithm:
             mean = evidence.reproduction.searches[PAPER, heading, a].points.mean(axis=0)
             columns += [printed_estimate(heading, a), np.abs(mean)]
-        made.append({"heading": heading, "number": number, "rows": _by_coefficient(columns)})
-    return made
+        groups.append({"heading": heading, "number": number, "rows": _by_coefficient(columns)})
+    return groups
 
 
 @FACTS.declare
 def errors(evidence: WildHorseEvidence) -> list[Facts]:
     """Errors printed, of means, of single runs, and ours, per cent, at each heading."""
-    made = []
+    groups = []
     for heading in HEADINGS:
-        columns, own = [], evidence.output_error[heading]
+        columns, fit = [], evidence.output_error[heading]
         for a in SearchAlgorithm:
-            found = evidence.reproduction.searches[PAPER, heading, a]
-            columns += [printed_error(heading, a), 100.0 * found.error_of_mean, 100.0 * found.mean_error]
-        columns += [100.0 * np.abs(e).mean(axis=0) for e in (own.noise_free_errors, own.noisy_errors)]
+            searched = evidence.reproduction.searches[PAPER, heading, a]
+            columns += [printed_error(heading, a), 100.0 * searched.error_of_mean, 100.0 * searched.mean_error]
+        columns += [100.0 * np.abs(e).mean(axis=0) for e in (fit.noise_free_errors, fit.noisy_errors)]
         mean = ("mean", *(float(np.mean(column)) for column in columns))
-        made.append({"heading": heading, "rows": [*_by_coefficient(columns), mean]})
-    return made
+        groups.append({"heading": heading, "rows": [*_by_coefficient(columns), mean]})
+    return groups
 
 
 def _by_coefficient(columns: list[Array]) -> list[tuple[str | float, ...]]:
@@ -451,7 +451,7 @@ def _by_coefficient(columns: list[Array]) -> list[tuple[str | float, ...]]:
 @FACTS.declare
 def settings(evidence: WildHorseEvidence) -> list[Facts]:
     """Errors in each setting: what box, fitness and unit decide."""
-    made = []
+    groups = []
     for setting in evidence.reproduction.settings:
         pairs = [
             errors
@@ -459,8 +459,8 @@ def settings(evidence: WildHorseEvidence) -> list[Facts]:
             for errors in (evidence.errors_of_mean(setting, a), evidence.single_run_errors(setting, a))
         ]
         rows = [(f"{h}°", *cells) for h, *cells in zip(HEADINGS, *pairs, strict=True)]
-        made.append({"setting": setting.value, "is_first": not made, "rows": rows})
-    return made
+        groups.append({"setting": setting.value, "is_first": not groups, "rows": rows})
+    return groups
 
 
 @FACTS.declare
@@ -540,22 +540,22 @@ def printed_fitness(evidence: WildHorseEvidence) -> Facts:
 @FACTS.declare
 def fitness(evidence: WildHorseEvidence) -> list[Facts]:
     """Fitness of all three, from the true state and from the identified model's own."""
-    made = []
+    groups = []
     for letter, setting in (("a", SearchSetting.DEGREES), ("b", MODEL_STATE)):
         best = {a: _first_fitness(evidence, setting, a) for a in SearchAlgorithm}
         curves = [
-            Curve(str(a), np.arange(len(of), dtype=np.float64), np.log10(np.maximum(of, 1e-12)))
-            for a, of in best.items()
+            Curve(str(a), np.arange(len(history), dtype=np.float64), np.log10(np.maximum(history, 1e-12)))
+            for a, history in best.items()
         ]
-        made.append({"letter": letter, "is_true_state": setting is SearchSetting.DEGREES, "curves": curves})
-    return made
+        groups.append({"letter": letter, "is_true_state": setting is SearchSetting.DEGREES, "curves": curves})
+    return groups
 
 
 @FACTS.declare
 def tracked(evidence: WildHorseEvidence) -> list[Facts]:
     """Heave and pitch, observed and identified, as figures 6 and 7."""
     observed, identified = evidence.reproduction.seas[FIGURE_HEADING][0].states, evidence.tracking.states
-    drawn = (
+    labels = (
         (0, 1.0, "Figure 6: heave tracked", "m", "between -0.15 and 0.10 m"),
         (2, float(np.degrees(1.0)), "Figure 7: pitch tracked", "deg", "within ±0.15°"),
     )
@@ -567,7 +567,7 @@ def tracked(evidence: WildHorseEvidence) -> list[Facts]:
             "range": printed,
             "curves": [Curve(name, _time(evidence), -factor * states[:, j]) for name, states in named.items()],
         }
-        for j, factor, title, unit, printed in drawn
+        for j, factor, title, unit, printed in labels
     ]
 
 
@@ -582,16 +582,16 @@ def tracking_errors(evidence: WildHorseEvidence) -> Facts:
 @FACTS.declare
 def histories(evidence: WildHorseEvidence) -> list[Facts]:
     """Coefficients over the paper's 200 s, in the tables' units, as figures 8 to 11; b53 by magnitude, as printed."""
-    found, time = evidence.reproduction.searches[PAPER, FIGURE_HEADING, IWHO], _time(evidence)
-    traces = np.abs(found.trace[np.minimum(np.arange(len(time)), len(found.trace) - 1)])
-    errors, made = np.abs(found.errors[0]), []
+    searched, time = evidence.reproduction.searches[PAPER, FIGURE_HEADING, IWHO], _time(evidence)
+    traces = np.abs(searched.trace[np.minimum(np.arange(len(time)), len(searched.trace) - 1)])
+    errors, groups = np.abs(searched.errors[0]), []
     for number, (pair, (units, size, power)) in enumerate(_HISTORY_PAIRS.items(), start=8):
         curves = []
         for name, unit in zip(pair, units, strict=True):
             k = COEFFICIENTS.index(name)
             curves.append(Curve(f"{name}, {power} {unit}", time, traces[:, k] / size))
-            curves.append(Curve(f"{name}, theory", time, np.full(len(time), abs(found.truth[k]) / size)))
-        made.append(
+            curves.append(Curve(f"{name}, theory", time, np.full(len(time), abs(searched.truth[k]) / size)))
+        groups.append(
             {
                 "number": number,
                 "pair": pair,
@@ -602,4 +602,4 @@ def histories(evidence: WildHorseEvidence) -> list[Facts]:
                 "curves": curves,
             }
         )
-    return made
+    return groups

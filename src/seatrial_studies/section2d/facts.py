@@ -85,11 +85,11 @@ def documented(_: SectionAnalysis) -> Facts:
 @FACTS.declare
 def modes(analysis: SectionAnalysis) -> list[Facts]:
     """Natural periods beside the documented ones, and the largest errors at held-out periods."""
-    made = []
+    groups = []
     for fit in (analysis.heave, analysis.roll):
         amplitude, phase = largest_errors(fit)
         off = 100.0 * (fit.period / fit.mode.documented_period - 1.0)
-        made.append(
+        groups.append(
             {
                 "motion": _motion(fit),
                 "documented_period": fit.mode.documented_period,
@@ -101,27 +101,27 @@ def modes(analysis: SectionAnalysis) -> list[Facts]:
                 "phase_error": phase,
             }
         )
-    return made
+    return groups
 
 
 @FACTS.declare
 def springs(analysis: SectionAnalysis) -> Facts:
     """Sway stiffness run by run, its mean and interval."""
-    found, (low, high) = analysis.sway_stiffness, SWAY_STIFFNESS
-    half = TWO_SIDED_95 * found.error
+    stiffness, (low, high) = analysis.sway_stiffness, SWAY_STIFFNESS
+    half = TWO_SIDED_95 * stiffness.error
     rows: list[TableRow] = [
-        (s.run, s.lower, s.upper, s.explained_share, 1e3 * s.delay, 1e3 * s.drift) for s in found.runs
+        (s.run, s.lower, s.upper, s.explained_share, 1e3 * s.delay, 1e3 * s.drift) for s in stiffness.runs
     ]
     rows += [
         (name, size, None, None, None, None)
-        for name, size in (("mean of the runs used", found.mean), ("standard error", found.error))
+        for name, size in (("mean of the runs used", stiffness.mean), ("standard error", stiffness.error))
     ]
     return {
-        "mean": found.mean,
+        "mean": stiffness.mean,
         "half": half,
-        "used": sum(s.explained_share > USED_SHARE for s in found.runs),
-        "is_known": np.isfinite(found.mean),
-        "meets_range": bool(found.mean - half <= high and found.mean + half >= low),
+        "used": sum(s.explained_share > USED_SHARE for s in stiffness.runs),
+        "is_known": np.isfinite(stiffness.mean),
+        "meets_range": bool(stiffness.mean - half <= high and stiffness.mean + half >= low),
         "rows": rows,
     }
 
@@ -129,21 +129,21 @@ def springs(analysis: SectionAnalysis) -> Facts:
 @FACTS.declare
 def guide(analysis: SectionAnalysis) -> Facts:
     """The force in the sway guide run by run, and its power of velocity."""
-    found = analysis.guide
-    forces, dampings = [f.force for f in found.runs], [f.damping for f in found.runs]
+    fitted = analysis.guide
+    forces, dampings = [f.force for f in fitted.runs], [f.damping for f in fitted.runs]
     return {
-        "usable": len(found.runs),
-        "exponent": found.exponent,
-        "exponent_distance": abs(found.exponent),
-        "half": TWO_SIDED_95 * found.error,
+        "usable": len(fitted.runs),
+        "exponent": fitted.exponent,
+        "exponent_distance": abs(fitted.exponent),
+        "half": TWO_SIDED_95 * fitted.error,
         "forces": forces,
         "median_force": float(np.median(forces)),
         "least_damping": min(dampings, default=np.nan),
         "largest_damping": max(dampings, default=np.nan),
-        "velocity": found.velocity_at_damping(RIG_DAMPING),
+        "velocity": fitted.velocity_at_damping(RIG_DAMPING),
         "rows": [
             (f.run, f.velocity, f.damping, f.force, f.third_harmonic_ratio)
-            for f in sorted(found.runs, key=lambda f: -f.velocity)
+            for f in sorted(fitted.runs, key=lambda f: -f.velocity)
         ],
     }
 
@@ -201,7 +201,7 @@ def form_metacentric_height() -> float:
 @FACTS.declare
 def heights(analysis: SectionAnalysis) -> Facts:
     """Wave heights over the nominal ones, per cent off, periods from 0.85 s on."""
-    found = {
+    deviations = {
         nominal: [
             100.0 * (2.0 * r.wave_amplitude / nominal - 1.0)
             for r in analysis.responses
@@ -211,7 +211,7 @@ def heights(analysis: SectionAnalysis) -> Facts:
     }
     by_height = [
         {"nominal": nominal, "mean": float(np.mean(off)), "off": off, "count": len(off)}
-        for nominal, off in found.items()
+        for nominal, off in deviations.items()
         if off
     ]
     return {
@@ -236,18 +236,18 @@ def wavenumbers(analysis: SectionAnalysis) -> Facts:
 @FACTS.declare
 def clocks(analysis: SectionAnalysis) -> Facts:
     """The camera against the accelerometers, run by run, and runs whose camera is dead."""
-    found = analysis.clocks
+    cameras = analysis.clocks
     dead = sorted({f.message.split(":")[0] for f in analysis.dead_channel_findings})
-    known = sorted({r.name for r in analysis.runs} & set(DEAD_CAMERA_RUNS))
+    expected = sorted({r.name for r in analysis.runs} & set(DEAD_CAMERA_RUNS))
     return {
-        "drift": 1e3 * max((abs(c.clock_drift) for c in found.values()), default=0.0),
+        "drift": 1e3 * max((abs(c.clock_drift) for c in cameras.values()), default=0.0),
         "gain": camera_gain(analysis)[0],
         "dead": dead,
         "dead_count": float(len(dead)),
-        "known": known,
-        "known_are_dead": set(known) <= set(dead),
+        "known": expected,
+        "known_are_dead": set(expected) <= set(dead),
         "rows": [
-            *((name, 1e3 * c.delay, 1e3 * c.clock_drift, 1e3 * c.delay_scatter, c.gain) for name, c in found.items()),
+            *((name, 1e3 * c.delay, 1e3 * c.clock_drift, 1e3 * c.delay_scatter, c.gain) for name, c in cameras.items()),
             *((name, None, None, None, None) for name in dead),
         ],
     }
@@ -278,29 +278,29 @@ def _scores(fit: ModeFit) -> Facts:
 @FACTS.declare
 def coefficients(analysis: SectionAnalysis) -> Facts:
     """Estimates on all periods with both kinds of intervals, beside what is documented."""
-    found, low_to_high = analysis.sway_stiffness, f"{SWAY_STIFFNESS[0]:g} to {SWAY_STIFFNESS[1]:g}"
-    springs = _coefficient("sway: stiffness of the springs [N/m]", found.mean, found.error, None, low_to_high)
+    stiffness, low_to_high = analysis.sway_stiffness, f"{SWAY_STIFFNESS[0]:g} to {SWAY_STIFFNESS[1]:g}"
+    springs = _coefficient("sway: stiffness of the springs [N/m]", stiffness.mean, stiffness.error, None, low_to_high)
     return {"rows": [*_mode_coefficients(analysis.heave), *_mode_coefficients(analysis.roll), springs]}
 
 
 def _mode_coefficients(fit: ModeFit) -> list[TableRow]:
-    name, found, errors = _motion(fit), fit.all_periods, fit.standard_errors
+    name, estimates, errors = _motion(fit), fit.all_periods, fit.standard_errors
     units, rig = UNITS[name], f"{RIG_DAMPING:g} (rig)" if fit.mode.motion is HEAVE.motion else None
-    mass = _natural_added_mass(fit) + found.oscillator.extra_added_mass
+    mass = _natural_added_mass(fit) + estimates.oscillator.extra_added_mass
     off, period = 1e3 * (fit.period - fit.mode.documented_period), f"{fit.mode.documented_period:g} s"
     beside = f"{name}: damping beside the wave damping, there, waves 0.024 m high [{units['linear_damping']}]"
     hydrostatic = f"{fit.mode.start.stiffness:.4g} (hydrostatic)"
     return [
         *(
             _coefficient(
-                f"{name}: {MEANINGS[key]} [{units[key]}]", getattr(found.oscillator, key), errors[key],
-                found.errors[key],
+                f"{name}: {MEANINGS[key]} [{units[key]}]", getattr(estimates.oscillator, key), errors[key],
+                estimates.errors[key],
             )
             for key in fit.mode.free
         ),
         _coefficient(
             f"{name}: added mass at the natural period [{units['extra_added_mass']}]", mass,
-            errors["extra_added_mass"], found.errors["extra_added_mass"],
+            errors["extra_added_mass"], estimates.errors["extra_added_mass"],
         ),
         _coefficient(f"{name}: natural period, ms over the documented", off, 1e3 * fit.period_error, None, period),
         _coefficient(beside, fit.viscous_damping, fit.viscous_damping_error, None, rig),
@@ -374,7 +374,7 @@ def coupled(analysis: SectionAnalysis) -> Facts:
 @FACTS.declare
 def stretches(analysis: SectionAnalysis) -> Facts:
     """The largest held-out errors with other steady stretches."""
-    made: list[tuple[Timing, ModeFit, ModeFit]] = [
+    fits: list[tuple[Timing, ModeFit, ModeFit]] = [
         (STEADY_TIMING, analysis.heave, analysis.roll),
         *analysis.timing_fits,
     ]
@@ -382,7 +382,7 @@ def stretches(analysis: SectionAnalysis) -> Facts:
         "is_full": analysis.timing_fits,
         "rows": [
             (timing.settling_s, timing.allowed_reflection_s, *largest_errors(heave), *largest_errors(roll))
-            for timing, heave, roll in made
+            for timing, heave, roll in fits
         ],
     }
 
@@ -390,12 +390,12 @@ def stretches(analysis: SectionAnalysis) -> Facts:
 @FACTS.declare
 def dampings(analysis: SectionAnalysis) -> Facts:
     """The largest held-out errors with other laws of damping."""
-    made = [("quadratic, in force", analysis.heave, analysis.roll), *analysis.damping_fits]
+    fits = [("quadratic, in force", analysis.heave, analysis.roll), *analysis.damping_fits]
     return {
         "is_full": analysis.damping_fits,
         "rows": [
             (label, *largest_errors(heave), heave.period, *largest_errors(roll), roll.period)
-            for label, heave, roll in made
+            for label, heave, roll in fits
         ],
     }
 
@@ -403,12 +403,12 @@ def dampings(analysis: SectionAnalysis) -> Facts:
 @FACTS.declare
 def probes(analysis: SectionAnalysis) -> Facts:
     """Places and gains of the probes, and the model's place."""
-    found = analysis.probes
+    places = analysis.probes
     names = [f"WP_{name[-1]}" for name in PROBES]
     place = FIRST_PROBE_TO_MODEL + analysis.heave.half_of_periods.oscillator.distance
     model = ("model (the distance fitted with heave included)", place, None)
-    each = zip(names, found.positions.tolist(), found.gains.tolist(), strict=True)
-    return {"misfit": found.misfit, "rows": [*each, model]}
+    each = zip(names, places.positions.tolist(), places.gains.tolist(), strict=True)
+    return {"misfit": places.misfit, "rows": [*each, model]}
 
 
 @FACTS.declare
@@ -430,13 +430,13 @@ def waves(analysis: SectionAnalysis) -> Facts:
 @FACTS.declare
 def responses(analysis: SectionAnalysis) -> list[Facts]:
     """Amplitude and phase of heave and roll over the wave period, computed in waves of the smaller nominal height."""
-    made = []
+    groups = []
     for fit in (analysis.heave, analysis.roll):
         name = _motion(fit).capitalize()
         size = _response_curves(fit, lambda response: float(abs(response)))
-        made.append({"title": f"{name} over the wave period", "unit": "amplitude [m/m]", "curves": size})
-        made.append({"title": f"{name}: phase", "unit": "phase [deg]", "curves": _response_curves(fit, _degrees)})
-    return made
+        groups.append({"title": f"{name} over the wave period", "unit": "amplitude [m/m]", "curves": size})
+        groups.append({"title": f"{name}: phase", "unit": "phase [deg]", "curves": _response_curves(fit, _degrees)})
+    return groups
 
 
 def _response_curves(fit: ModeFit, component: Callable[[complex], float]) -> list[Curve]:

@@ -85,7 +85,7 @@ class SupportVectorEvidence:
 
     def comparison(self, column: Table2Column, run: PublishedManoeuvre) -> RunComparison:
         """Return the run of a corrected column."""
-        title = next(one.title for one in CORRECTED if one.column is column)
+        title = next(candidate.title for candidate in CORRECTED if candidate.column is column)
         return next(o for o in self.comparisons if o.title == title and o.run is run)
 
     def own_comparison(self, run: PublishedManoeuvre) -> RunComparison:
@@ -122,26 +122,26 @@ def _named(results: Sequence[EstimatorResult], name: str) -> EstimatorResult:
 @FACTS.declare
 def results(evidence: SupportVectorEvidence) -> Facts:
     """Both pipelines, the regressions they are compared with, output error, and the printed improved column."""
-    made = evidence.reproduction
-    original, improved, noisy_original, noisy_improved = made.published
+    reproduction = evidence.reproduction
+    original, improved, noisy_original, noisy_improved = reproduction.published
     printed = np.abs(_printed_errors(IMPROVED))
-    exact, ours = made.output_error_noise_free, made.output_error_noisy
+    exact, ours = reproduction.output_error_noise_free, reproduction.output_error_noisy
     at_Y_vr = COEFFICIENTS.index("Y_vr")
     return {
         "original": original,
         "improved": improved,
         "noisy_original": noisy_original,
         "noisy_improved": noisy_improved,
-        "euler": _named(made.noise_free_results, "Euler differences, least squares"),
-        "differenced": _named(made.noise_free_results, "Euler, differenced and centred"),
-        "uncentred": _named(made.noise_free_results, "Euler, differenced"),
-        "central": _named(made.noise_free_results, "central differences, least squares"),
-        "machine": _named(made.noise_free_results, "central differences, support vectors"),
+        "euler": _named(reproduction.noise_free_results, "Euler differences, least squares"),
+        "differenced": _named(reproduction.noise_free_results, "Euler, differenced and centred"),
+        "uncentred": _named(reproduction.noise_free_results, "Euler, differenced"),
+        "central": _named(reproduction.noise_free_results, "central differences, least squares"),
+        "machine": _named(reproduction.noise_free_results, "central differences, support vectors"),
         "ours": ours,
         "best": evidence.best_regression(),
-        "near_original": made.nearest(ORIGINAL),
-        "near_improved": made.nearest(IMPROVED),
-        "setting_count": len(made.settings) // 2,
+        "near_original": reproduction.nearest(ORIGINAL),
+        "near_improved": reproduction.nearest(IMPROVED),
+        "setting_count": len(reproduction.settings) // 2,
         "printed_median": float(np.median(printed)),
         "printed_worst": float(printed.max()),
         "worst": COEFFICIENTS[int(np.argmax(printed))],
@@ -156,15 +156,16 @@ def results(evidence: SupportVectorEvidence) -> Facts:
 @FACTS.declare
 def lasso(evidence: SupportVectorEvidence) -> Facts:
     """What Lasso takes out in each setting."""
-    made = evidence.reproduction.selections
-    right = [set(s.dropped) == set(DROPPED_COEFFICIENTS) for s in made]
+    selections = evidence.reproduction.selections
+    right = [set(s.dropped) == set(DROPPED_COEFFICIENTS) for s in selections]
     return {
-        "selections": [{"setting": s.setting, "dropped": s.dropped} for s in made],
+        "selections": [{"setting": s.setting, "dropped": s.dropped} for s in selections],
         "right": sum(right),
-        "tried": len(made),
+        "tried": len(selections),
         "is_first_right": right[0],
         "rows": [
-            (s.setting, _listed(s.dropped), " / ".join(f"{s.penalties[e]:.2g}" for e in MotionEquation)) for s in made
+            (s.setting, _listed(s.dropped), " / ".join(f"{s.penalties[e]:.2g}" for e in MotionEquation))
+            for s in selections
         ],
     }
 
@@ -227,12 +228,12 @@ def cleaning(evidence: SupportVectorEvidence) -> Facts:
 def speeds(evidence: SupportVectorEvidence) -> Facts:
     """Errors of predictions at other speeds."""
     names = list(evidence.speeds[0].errors)
-    of = {name: [s.errors[name] for s in evidence.speeds] for name in names}
+    by_name = {name: [s.errors[name] for s in evidence.speeds] for name in names}
     return {
         "names": names,
         "factors": [s.factor for s in evidence.speeds],
-        "growth": max(max(errors) / min(errors) for errors in of.values()),
-        "by_craft": [{"name": name, "least": min(errors), "largest": max(errors)} for name, errors in of.items()],
+        "growth": max(max(errors) / min(errors) for errors in by_name.values()),
+        "by_craft": [{"name": name, "least": min(errors), "largest": max(errors)} for name, errors in by_name.items()],
         "drift": evidence.turn_drift[0],
         "rows": [
             (s.factor, s.speed, *(100.0 * s.errors[n] for n in names), *(s.cc[n] for n in names))
@@ -244,17 +245,17 @@ def speeds(evidence: SupportVectorEvidence) -> Facts:
 @FACTS.declare
 def own_numbers(evidence: SupportVectorEvidence) -> Facts:
     """What the checks look at."""
-    made, signs = evidence.reproduction, evidence.audit.sign_checks
-    best = min(made.errors_over_bound, key=lambda name: made.errors_over_bound[name])
+    reproduction, signs = evidence.reproduction, evidence.audit.sign_checks
+    best = min(reproduction.errors_over_bound, key=lambda name: reproduction.errors_over_bound[name])
     confirming = [check.confirms_misprints for check in signs]
     return {
-        "central": _named(made.noise_free_results, "central differences, least squares").largest_error,
-        "exact": made.output_error_noise_free.largest_error,
-        "bound_ratio": made.output_error_ratio,
-        "within_one_percent": int(np.sum(np.abs(made.output_error_noisy.errors) <= 0.01)),
+        "central": _named(reproduction.noise_free_results, "central differences, least squares").largest_error,
+        "exact": reproduction.output_error_noise_free.largest_error,
+        "bound_ratio": reproduction.output_error_ratio,
+        "within_one_percent": int(np.sum(np.abs(reproduction.output_error_noisy.errors) <= 0.01)),
         "best": best,
-        "gain": made.errors_over_bound[best],
-        "pipeline_ratio": made.published[3].median_error / made.output_error_noisy.median_error,
+        "gain": reproduction.errors_over_bound[best],
+        "pipeline_ratio": reproduction.published[3].median_error / reproduction.output_error_noisy.median_error,
         "confirming": sum(confirming),
         "all_confirm": all(confirming),
         "choices": len(signs),
@@ -264,16 +265,16 @@ def own_numbers(evidence: SupportVectorEvidence) -> Facts:
 @FACTS.declare
 def coefficients(evidence: SupportVectorEvidence) -> Facts:
     """Table 2: printed columns digit by digit beside ours."""
-    made = evidence.reproduction
+    reproduction = evidence.reproduction
     true = [f"{value:.5f}" for value in true_coefficients()]
-    own = (row.values.tolist() for row in (*made.published[:2], made.output_error_noisy))
-    bias = (" / ".join(f"{row.bias.get(e, 0.0):.1e}" for e in MotionEquation) for row in made.published[:2])
+    columns = (row.values.tolist() for row in (*reproduction.published[:2], reproduction.output_error_noisy))
+    bias = (" / ".join(f"{row.bias.get(e, 0.0):.1e}" for e in MotionEquation) for row in reproduction.published[:2])
     return {
         "rows": [
-            *zip(COEFFICIENTS, true, TABLE_2[ORIGINAL], TABLE_2[IMPROVED], *own, strict=True),
+            *zip(COEFFICIENTS, true, TABLE_2[ORIGINAL], TABLE_2[IMPROVED], *columns, strict=True),
             ("bias b, u / v / r", "-", "not printed", "not printed", *bias, "-"),
         ],
-        "zeros": int(np.sum(made.unscaled.values == 0.0)),
+        "zeros": int(np.sum(reproduction.unscaled.values == 0.0)),
         "count": len(COEFFICIENTS),
     }
 
@@ -281,9 +282,9 @@ def coefficients(evidence: SupportVectorEvidence) -> Facts:
 @FACTS.declare
 def errors(evidence: SupportVectorEvidence) -> Facts:
     """Errors of every column, per cent of the truth."""
-    made = evidence.reproduction
-    found = (*made.published, made.output_error_noise_free, made.output_error_noisy)
-    columns = [_printed_errors(ORIGINAL), _printed_errors(IMPROVED), *(result.errors for result in found)]
+    reproduction = evidence.reproduction
+    estimates = (*reproduction.published, reproduction.output_error_noise_free, reproduction.output_error_noisy)
+    columns = [_printed_errors(ORIGINAL), _printed_errors(IMPROVED), *(result.errors for result in estimates)]
     medians = (100.0 * float(np.median(np.abs(column))) for column in columns)
     rows = zip(COEFFICIENTS, *((100.0 * column).tolist() for column in columns), strict=True)
     return {"rows": [*rows, ("median of magnitudes", *medians)]}
@@ -294,10 +295,10 @@ def _median_and_largest(result: EstimatorResult) -> tuple[float, float]:
 
 
 def _estimators(evidence: SupportVectorEvidence) -> list[tuple[str, EstimatorResult, EstimatorResult]]:
-    made = evidence.reproduction
-    pairs = zip(made.noise_free_results, made.noisy_results, strict=True)
-    own = ("output error", made.output_error_noise_free, made.output_error_noisy)
-    return [*((clean.name, clean, noisy) for clean, noisy in pairs), own]
+    reproduction = evidence.reproduction
+    pairs = zip(reproduction.noise_free_results, reproduction.noisy_results, strict=True)
+    output_error = ("output error", reproduction.output_error_noise_free, reproduction.output_error_noisy)
+    return [*((clean.name, clean, noisy) for clean, noisy in pairs), output_error]
 
 
 @FACTS.declare
@@ -314,19 +315,19 @@ def estimators(evidence: SupportVectorEvidence) -> Facts:
 @FACTS.declare
 def tube_and_penalty(evidence: SupportVectorEvidence) -> Facts:
     """Support vectors by penalty and tube beside the columns of table 2."""
-    made = evidence.reproduction
-    rows = [
+    reproduction = evidence.reproduction
+    rows: list[tuple[str | float, ...]] = [
         (
             "original, unscaled",
-            *_median_and_largest(made.unscaled),
-            made.unscaled.wrong_signs,
+            *_median_and_largest(reproduction.unscaled),
+            reproduction.unscaled.wrong_signs,
             "",
             "",
-            _codes(made.unscaled),
+            _codes(reproduction.unscaled),
         )
     ]
-    for s in made.settings:
-        name = f"{s.column}, {s.result.name}{' (nearest)' if s is made.nearest(s.column) else ''}"
+    for s in reproduction.settings:
+        name = f"{s.column}, {s.result.name}{' (nearest)' if s is reproduction.nearest(s.column) else ''}"
         distances = 100.0 * s.median_distance, 100.0 * s.largest_distance
         rows.append((name, *_median_and_largest(s.result), s.result.wrong_signs, *distances, _codes(s.result)))
     return {"rows": rows}
@@ -348,17 +349,23 @@ def quasi_differences(evidence: SupportVectorEvidence) -> Facts:
 def velocity_noise(evidence: SupportVectorEvidence) -> Facts:
     """Median errors of each derivative by the noise of the velocities."""
     sweep = evidence.reproduction.noise_sweep
-    medians = ((100.0 * of).tolist() for of in sweep.medians.values())
+    medians = ((100.0 * errors).tolist() for errors in sweep.medians.values())
     return {"rows": list(zip(sweep.levels, *medians, strict=True))}
 
 
 @FACTS.declare
 def condition_numbers(evidence: SupportVectorEvidence) -> Facts:
     """Table 3 under either labelling, beside ours."""
-    known = evidence.audit.table_3_conditions
+    table = evidence.audit.table_3_conditions
     return {
         "rows": [
-            (EQUATION_NAMES[e], f"{TABLE_3[e]}", f"{known.labels_exchanged[e]}", known.plain[e], known.improved[e])
+            (
+                EQUATION_NAMES[e],
+                f"{TABLE_3[e]}",
+                f"{table.labels_exchanged[e]}",
+                table.plain[e],
+                table.improved[e],
+            )
             for e in MotionEquation
         ]
     }
@@ -371,7 +378,7 @@ def accuracy(evidence: SupportVectorEvidence) -> Facts:
     for run, printed in TABLE_4.items():
         pair = (evidence.comparison(IMPROVED, run).replayed_accuracy, evidence.own_comparison(run).replayed_accuracy)
         for c in CHANNELS:
-            rmse, cc = (of.rmse[c] if of else None for of in pair), (of.cc[c] if of else None for of in pair)
+            rmse, cc = ([getattr(a, key)[c] if a else None for a in pair] for key in ("rmse", "cc"))
             rows.append((f"{run}, {c}", f"{printed.rmse[c]:.4f}", *rmse, f"{printed.cc[c]:.4f}", *cc))
     return {"rows": rows}
 
@@ -455,15 +462,15 @@ def _bars(labels: Sequence[str], series: Mapping[str, Array]) -> Facts:
 @FACTS.declare
 def error_bars(evidence: SupportVectorEvidence) -> Facts:
     """Errors of the coefficients, printed and ours, per cent."""
-    made = evidence.reproduction
-    found = {
+    reproduction = evidence.reproduction
+    by_name = {
         "paper, original SVR": _printed_errors(ORIGINAL),
         "paper, improved SVR": _printed_errors(IMPROVED),
-        "ours, original": made.published[0].errors,
-        "ours, improved": made.published[1].errors,
-        "output error, sensor noise": made.output_error_noisy.errors,
+        "ours, original": reproduction.published[0].errors,
+        "ours, improved": reproduction.published[1].errors,
+        "output error, sensor noise": reproduction.output_error_noisy.errors,
     }
-    return _bars(COEFFICIENTS, {name: 100.0 * np.abs(each) for name, each in found.items()})
+    return _bars(COEFFICIENTS, {name: 100.0 * np.abs(each) for name, each in by_name.items()})
 
 
 @FACTS.declare
@@ -471,14 +478,15 @@ def estimator_bars(evidence: SupportVectorEvidence) -> Facts:
     """Median error of every estimator on both series, per cent."""
     names, clean, noisy = zip(*_estimators(evidence), strict=True)
     series = {"noise-free": clean, "sensor noise": noisy}
-    return _bars(names, {name: 100.0 * np.array([r.median_error for r in of]) for name, of in series.items()})
+    return _bars(names, {name: 100.0 * np.array([r.median_error for r in group]) for name, group in series.items()})
 
 
 @FACTS.declare
 def noise_bars(evidence: SupportVectorEvidence) -> Facts:
     """Median errors of each derivative by the noise of the velocities, per cent."""
     sweep = evidence.reproduction.noise_sweep
-    return _bars([f"{level:g} m/s" for level in sweep.levels], {n: 100.0 * of for n, of in sweep.medians.items()})
+    levels = [f"{level:g} m/s" for level in sweep.levels]
+    return _bars(levels, {name: 100.0 * errors for name, errors in sweep.medians.items()})
 
 
 @FACTS.declare
@@ -508,9 +516,9 @@ def correlations(evidence: SupportVectorEvidence) -> list[Facts]:
 def runs(evidence: SupportVectorEvidence) -> list[Facts]:
     """Motions, forces, tracks, headings and nozzle angles of the three runs."""
     return [
-        drawn
+        group
         for run in FIGURE_NUMBERS
-        for drawn in (*_motions(evidence, run), *_forces(evidence, run), *_steered(evidence, run))
+        for group in (*_motions(evidence, run), *_forces(evidence, run), *_steered(evidence, run))
     ]
 
 
@@ -523,15 +531,16 @@ def _motions(evidence: SupportVectorEvidence, run: PublishedManoeuvre) -> list[F
 
 
 def _forces(evidence: SupportVectorEvidence, run: PublishedManoeuvre) -> list[Facts]:
-    outcome, own = evidence.comparison(IMPROVED, run), evidence.own_comparison(run)
+    outcome, own_run = evidence.comparison(IMPROVED, run), evidence.own_comparison(run)
     time = outcome.reference.time
     by_craft = {
         _TRUE: hull_and_jet_forces(TRUTH.craft(), outcome.reference),
         _PAPER: hull_and_jet_forces(outcome.craft, outcome.replayed),
-        _OWN: hull_and_jet_forces(own.craft, own.replayed),
+        _OWN: hull_and_jet_forces(own_run.craft, own_run.replayed),
     }
     return [
-        _over_time(run, letter, {n: (time, of[letter]) for n, of in by_craft.items()}) for letter in by_craft[_TRUE]
+        _over_time(run, letter, {n: (time, forces[letter]) for n, forces in by_craft.items()})
+        for letter in by_craft[_TRUE]
     ]
 
 
@@ -551,7 +560,7 @@ def _steered(evidence: SupportVectorEvidence, run: PublishedManoeuvre) -> list[F
     outcome, number = evidence.comparison(IMPROVED, run), FIGURE_NUMBERS[run].split(",")[0]
     steered = {_PAPER: outcome.steered.record, _OWN: evidence.own_comparison(run).steered.record}
     records = {_TRUE: outcome.reference, **{name: r for name, r in steered.items() if r is not None}}
-    drawn = {
+    labels = {
         f"Figure {number}b: {run}, track": ("y0 [m]", "x0 [m]", _track),
         f"Figure {number}c: {run}, heading": ("time [s]", "heading [°]", lambda r: (r.time, np.degrees(r["psi"]))),
         f"Figure {number}c: {run}, nozzle": ("time [s]", "nozzle [°]", lambda r: (r.time, np.degrees(r["delta"]))),
@@ -566,7 +575,7 @@ def _steered(evidence: SupportVectorEvidence, run: PublishedManoeuvre) -> list[F
             "is_steered": True,
             "is_turn": run is PublishedManoeuvre.TURN_35,
         }
-        for title, (x_label, y_label, points) in drawn.items()
+        for title, (x_label, y_label, points) in labels.items()
     ]
 
 

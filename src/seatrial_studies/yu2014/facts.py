@@ -41,6 +41,7 @@ from seatrial_studies.yu2014.searches import (
     FinGainSearches,
     FiveGainComparison,
     FiveGainDesign,
+    GeneticSearchSetting,
     JointOptimum,
     ThreeGainOptimum,
     TimeDomainSearch,
@@ -107,9 +108,8 @@ class FinGainEvidence:
         self, preamplifier: Preamplifier, fin_objective: FinObjective = FinObjective.PRINTED
     ) -> FinGainSearches:
         """Return the searches of one reading and one J2, normalised by the largest."""
-        wanted = (preamplifier, fin_objective, Normaliser.MAX)
-        settings = ((s, s.setting) for s in self.searches)
-        return next(s for s, of in settings if (of.preamplifier, of.fin_objective, of.normaliser) == wanted)
+        wanted = GeneticSearchSetting(preamplifier, fin_objective, Normaliser.MAX)
+        return next(s for s in self.searches if s.setting == wanted)
 
     @property
     def search_seconds(self) -> float:
@@ -132,18 +132,18 @@ def _gains(gains: Array, names: Sequence[str] = GAIN_NAMES) -> list[str]:
 @FACTS.declare
 def energy(evidence: FinGainEvidence) -> Facts:
     """Fin rates and W of both columns, printed and fitted, and what else costs energy, by the better fit."""
-    made = evidence.energy
-    each = [part for e in made for part in e.fitted]
-    more = [e.row for e in made if e.fitted[1].reversals > e.fitted[0].reversals]
+    comparisons = evidence.energy
+    each = [part for e in comparisons for part in e.fitted]
+    more = [e.row for e in comparisons if e.fitted[1].reversals > e.fitted[0].reversals]
     return {
-        "ratios": [e.printed_rate_ratio for e in made],
-        "saved": [e.saved(e.printed) for e in made],
+        "ratios": [e.printed_rate_ratio for e in comparisons],
+        "saved": [e.saved(e.printed) for e in comparisons],
         "by_reading": [_fitted_energy(evidence, reading) for reading in (WASHOUT, PRINTED)],
         "works": [part.work for part in each],
         "reversals": float(np.mean([part.reversals for part in each])),
         "powers": [part.work * part.reversals / SECONDS_PER_HOUR for part in each],
         "drags": [part.fin_power / WATTS_PER_KILOWATT for part in each],
-        "drag_changes": [100.0 * (e.fitted[1].fin_power / e.fitted[0].fin_power - 1.0) for e in made],
+        "drag_changes": [100.0 * (e.fitted[1].fin_power / e.fitted[0].fin_power - 1.0) for e in comparisons],
         "more": more,
         "more_count": len(more),
         "rows": [
@@ -151,7 +151,7 @@ def energy(evidence: FinGainEvidence) -> Facts:
                 e.row, e.printed_rate_ratio, e.fitted_rate_ratio, *(part.work for part in e.printed),
                 e.saved(e.printed), *(part.work for part in e.fitted), e.saved(e.fitted),
             )
-            for e in made
+            for e in comparisons
         ],
     }  # fmt: skip
 
@@ -189,9 +189,9 @@ def losses(evidence: FinGainEvidence) -> Facts:
 @FACTS.declare
 def table_1(evidence: FinGainEvidence) -> Facts:
     """Table 1 against itself, and beside the GA's gains in both readings."""
-    design, at_22, made = DESIGN_ROW, DESIGN_ROW_AT_22_KN, evidence.table_1_responses
-    reductions = {reading.name: made[reading][4].reduction for reading in Preamplifier}
-    left = 100.0 - design.genetic.reduction
+    design, at_22, responses = DESIGN_ROW, DESIGN_ROW_AT_22_KN, evidence.table_1_responses
+    reductions = {reading.name: responses[reading][4].reduction for reading in Preamplifier}
+    remaining = 100.0 - design.genetic.reduction
     return {
         "design": design,
         "at_22": at_22,
@@ -203,35 +203,35 @@ def table_1(evidence: FinGainEvidence) -> Facts:
         "contradictory_count": len(evidence.audit.contradictory_rows),
         "drop": design.traditional.reduction - design.genetic.reduction,
         "rms_variation": evidence.rms_variation,
-        "chance": left * evidence.rms_variation * np.sqrt(2.0),
+        "chance": remaining * evidence.rms_variation * np.sqrt(2.0),
         "made": reductions,
         "points_at_22": reductions["WASHOUT"] - at_22.genetic.reduction,
         "K_q": {reading.name: K_q for reading, K_q in evidence.calibrated_K_q.items()},
-        "uncontrolled": made[WASHOUT][1].uncontrolled,
-        "rows": _beside_table_1(lambda row: row.genetic, [made[reading] for reading in Preamplifier]),
+        "uncontrolled": responses[WASHOUT][1].uncontrolled,
+        "rows": _beside_table_1(lambda row: row.genetic, [responses[reading] for reading in Preamplifier]),
     }
 
 
 def _beside_table_1(
-    column: Callable[[Table1Row], ControllerResult], made: Sequence[Sequence[ControllerResult | RollResponse]]
+    column: Callable[[Table1Row], ControllerResult], columns: Sequence[Sequence[ControllerResult | RollResponse]]
 ) -> list[tuple[str | float, ...]]:
     """Return the rows of table 1: for each quantity the paper's number and that of each reading."""
     return [
         (
             row.name,
-            *(getattr(of, quantity) for quantity in ("roll", "rate", "reduction") for of in (column(row), *ours)),
+            *(getattr(result, name) for name in ("roll", "rate", "reduction") for result in (column(row), *ours)),
         )
-        for row, *ours in zip(TABLE_1, *made, strict=True)
+        for row, *ours in zip(TABLE_1, *columns, strict=True)
     ]
 
 
 @FACTS.declare
 def fits(evidence: FinGainEvidence) -> Facts:
     """Table 1 fitted: errors, gains of the baseline, what was fitted."""
-    made = {reading.name: evidence.fit(reading) for reading in Preamplifier}
+    by_reading = {reading.name: evidence.fit(reading) for reading in Preamplifier}
     return {
-        "of": made,
-        "baseline": {name: _gains(fit.baseline) for name, fit in made.items()},
+        "of": by_reading,
+        "baseline": {name: _gains(fit.baseline) for name, fit in by_reading.items()},
         "log_error": evidence.best_fit.log_error,
         "baseline_log_error": evidence.nearest_baseline.baseline_log_error,
         "rows": [
@@ -247,15 +247,15 @@ def fits(evidence: FinGainEvidence) -> Facts:
 @FACTS.declare
 def fitted_genetic(evidence: FinGainEvidence) -> Facts:
     """The GA's column as it is fitted."""
-    made = [f.results(f.genetic) for f in map(evidence.fit, Preamplifier)]
-    return {"rows": _beside_table_1(lambda row: row.genetic, made)}
+    results = [f.results(f.genetic) for f in map(evidence.fit, Preamplifier)]
+    return {"rows": _beside_table_1(lambda row: row.genetic, results)}
 
 
 @FACTS.declare
 def fitted_baseline(evidence: FinGainEvidence) -> Facts:
     """The traditional PID's column as it is fitted."""
-    made = [f.results(f.traditional) for f in map(evidence.fit, Preamplifier)]
-    return {"rows": _beside_table_1(lambda row: row.traditional, made)}
+    results = [f.results(f.traditional) for f in map(evidence.fit, Preamplifier)]
+    return {"rows": _beside_table_1(lambda row: row.traditional, results)}
 
 
 @FACTS.declare
@@ -277,8 +277,8 @@ def search(evidence: FinGainEvidence) -> Facts:
     smaller, larger = evidence.weights[WASHOUT].count_better()
     return {
         "by_reading": [_search_of(evidence, reading) for reading in Preamplifier],
-        "is_better": all(of.is_better for of in evidence.weights.values()),
-        "is_worse": all(of.is_worse for of in evidence.weights.values()),
+        "is_better": all(comparison.is_better for comparison in evidence.weights.values()),
+        "is_worse": all(comparison.is_worse for comparison in evidence.weights.values()),
         "spread": washout.relative_spread,
         "narrowest": float(washout.relative_spread.min()),
         "smaller": smaller,
@@ -288,7 +288,7 @@ def search(evidence: FinGainEvidence) -> Facts:
 
 
 def _search_of(evidence: FinGainEvidence, reading: Preamplifier) -> Facts:
-    compared, found = evidence.weights[reading], evidence.searches_with(reading)
+    compared, searches = evidence.weights[reading], evidence.searches_with(reading)
     smaller, larger = compared.count_better()
     return {
         "label": PREAMPLIFIER_LABELS[reading],
@@ -296,11 +296,11 @@ def _search_of(evidence: FinGainEvidence, reading: Preamplifier) -> Facts:
         "larger": larger,
         "J": np.median(compared.J, axis=1),
         "volume": np.median(compared.volume, axis=1),
-        "seeds": len(found.Ms),
-        "spread": 100.0 * found.relative_spread,
-        "largest_Ms": found.Ms.max(),
-        "dominated": found.is_dominated.sum(),
-        "distance": found.distance_to_published,
+        "seeds": len(searches.Ms),
+        "spread": 100.0 * searches.relative_spread,
+        "largest_Ms": searches.Ms.max(),
+        "dominated": searches.is_dominated.sum(),
+        "distance": searches.distance_to_published,
     }
 
 
@@ -354,20 +354,21 @@ def three_gains(evidence: FinGainEvidence) -> Facts:
 @FACTS.declare
 def five_gains(evidence: FinGainEvidence) -> Facts:
     """Five gains in the seas of the search and in those held out."""
-    made = evidence.five_gain_design
+    design = evidence.five_gain_design
     (band, _), (low, _) = FREQUENCIES_AND_DAMPINGS
-    kinds = {"searched in": made.design_seas, "held out": made.held_out_seas, "three gains, same box": made.three_gains}
-    held_out_rate = [c.rate_ratio for c in made.held_out_seas]
+    held_out, three = design.held_out_seas, design.three_gains
+    kinds = {"searched in": design.design_seas, "held out": held_out, "three gains, same box": three}
+    held_out_rate = [c.rate_ratio for c in held_out]
     return {
-        "long_crested_roll": made.design_seas[0].roll_ratio,
-        "worst_roll": max(c.roll_ratio for c in made.design_seas),
-        "worst_rate": max(c.rate_ratio for c in made.design_seas),
-        "held_out_roll": [c.roll_ratio for c in made.held_out_seas],
+        "long_crested_roll": design.design_seas[0].roll_ratio,
+        "worst_roll": max(c.roll_ratio for c in design.design_seas),
+        "worst_rate": max(c.rate_ratio for c in design.design_seas),
+        "held_out_roll": [c.roll_ratio for c in held_out],
         "held_out_rate": held_out_rate,
         "held_out_count": len(held_out_rate),
         "faster_count": sum(rate > 1.0 for rate in held_out_rate),
-        "Ms": made.Ms,
-        "gains": _gains(made.gains, (*GAIN_NAMES, "KB", "KL")),
+        "Ms": design.Ms,
+        "gains": _gains(design.gains, (*GAIN_NAMES, "KB", "KL")),
         "band": band,
         "low": low,
         "rows": [_compared(kind, c) for kind, seas in kinds.items() for c in seas],
@@ -382,16 +383,16 @@ def _compared(kind: str, c: FiveGainComparison) -> tuple[str | float, ...]:
 @FACTS.declare
 def held_out_seas(evidence: FinGainEvidence) -> list[Facts]:
     """Five gains in each sea that the search did not see."""
-    made = evidence.five_gain_design
+    design = evidence.five_gain_design
     return [
         {
             "sea": c.sea.name,
             "roll_ratio": c.roll_ratio,
             "rate_ratio": c.rate_ratio,
-            "is_hardest": c.sea == made.hardest.sea,
-            "hardest": made.hardest,
+            "is_hardest": c.sea == design.hardest.sea,
+            "hardest": design.hardest,
         }
-        for c in made.held_out_seas
+        for c in design.held_out_seas
     ]
 
 
@@ -445,27 +446,27 @@ def scatter(evidence: FinGainEvidence) -> Facts:
 @FACTS.declare
 def answers(evidence: FinGainEvidence) -> list[Facts]:
     """Answers of the published search by seed, in both readings."""
-    made = []
+    groups = []
     for reading in Preamplifier:
-        found = evidence.searches_with(reading)
-        columns = (*found.gains.T, found.Ms, *found.objective_ratios.T, found.reduction)
-        seeds = map(str, range(1, len(found.Ms) + 1))
+        searches = evidence.searches_with(reading)
+        columns = (*searches.gains.T, searches.Ms, *searches.objective_ratios.T, searches.reduction)
+        seeds = map(str, range(1, len(searches.Ms) + 1))
         rows = list(zip(seeds, *(column.tolist() for column in columns), strict=True))
-        made.append({"label": PREAMPLIFIER_LABELS[reading], "rows": rows})
-    return made
+        groups.append({"label": PREAMPLIFIER_LABELS[reading], "rows": rows})
+    return groups
 
 
 @FACTS.declare
 def by_records(evidence: FinGainEvidence) -> Facts:
     """The search by records of 1000 s beside that by the spectrum; nothing where it was left out."""
-    made = evidence.time_domain
-    if made is None:
+    searched = evidence.time_domain
+    if searched is None:
         return {"is_made": False}
-    each = zip(("records of one sea", "its spectrum"), made.gains, made.responses, made.cpu_s, strict=True)
+    each = zip(("records of one sea", "its spectrum"), searched.gains, searched.responses, searched.cpu_s, strict=True)
     return {
         "is_made": True,
-        "label": PREAMPLIFIER_LABELS[made.preamplifier],
-        "evaluations": made.evaluations,
+        "label": PREAMPLIFIER_LABELS[searched.preamplifier],
+        "evaluations": searched.evaluations,
         "rows": [(label, *gains.tolist(), r.reduction, r.rate, r.Ms, cpu_s) for label, gains, r, cpu_s in each],
     }
 
@@ -505,18 +506,18 @@ def rate_bars(evidence: FinGainEvidence) -> Facts:
 @FACTS.declare
 def reduction_bars(evidence: FinGainEvidence) -> Facts:
     """Roll reduction with the GA's gains, printed and in both readings."""
-    made = {
+    series = {
         f"{PREAMPLIFIER_LABELS[reading]}, K_q fitted": tuple(m.reduction for m in evidence.table_1_responses[reading])
         for reading in Preamplifier
     }
-    return {"labels": _ROW_NAMES, "series": {"paper, GA": tuple(row.genetic.reduction for row in TABLE_1), **made}}
+    return {"labels": _ROW_NAMES, "series": {"paper, GA": tuple(row.genetic.reduction for row in TABLE_1), **series}}
 
 
 @FACTS.declare
 def histories(evidence: FinGainEvidence) -> list[Facts]:
     """Roll and fin rate over time, as figures 3 to 7."""
     h, label = evidence.histories, PREAMPLIFIER_LABELS[evidence.best_fit.preamplifier]
-    drawn = (
+    labels = (
         ("Figure 3: roll without fins", "roll [°]", h.uncontrolled),
         ("Figure 4: roll under the traditional PID (fitted)", "roll [°]", h.pid[0]),
         ("Figure 5: roll under the GA's gains", "roll [°]", h.genetic[0]),
@@ -525,20 +526,20 @@ def histories(evidence: FinGainEvidence) -> list[Facts]:
     )
     return [
         {"title": title, "y_label": y_label, "label": label, "curves": [Curve(f"rms {np.std(y):.2f}", h.time, y)]}
-        for title, y_label, y in drawn
+        for title, y_label, y in labels
     ]
 
 
 @FACTS.declare
 def answer_bars(evidence: FinGainEvidence) -> list[Facts]:
     """Answers by seed as shares of the searched ranges, in both readings."""
-    made = []
+    groups = []
     for reading in Preamplifier:
         shares = 100.0 * (evidence.searches_with(reading).gains - BOX.lower) / BOX.width
         series = {name: tuple(column) for name, column in zip(GAIN_NAMES, shares.T.tolist(), strict=True)}
         labels = [str(seed) for seed in range(1, len(shares) + 1)]
-        made.append({"label": PREAMPLIFIER_LABELS[reading], "labels": labels, "series": series})
-    return made
+        groups.append({"label": PREAMPLIFIER_LABELS[reading], "labels": labels, "series": series})
+    return groups
 
 
 @FACTS.declare
@@ -555,7 +556,7 @@ def peak_bars(evidence: FinGainEvidence) -> Facts:
 @FACTS.declare
 def trade(evidence: FinGainEvidence) -> Facts:
     """Roll against fin rate with three and with five gains, and the paper's gains as a cross."""
-    made, names = evidence.five_gain_design, {3: "three gains", 5: "five gains"}
-    curves = [Curve(names[count], made.rate_ratios, roll) for count, roll in made.roll_ratios.items()]
+    design, names = evidence.five_gain_design, {3: "three gains", 5: "five gains"}
+    curves = [Curve(names[count], design.rate_ratios, roll) for count, roll in design.roll_ratios.items()]
     cross = (np.array([0.97, 1.03, 1.0, 1.0, 1.0]), np.array([1.0, 1.0, 1.0, 0.97, 1.03]))
     return {"curves": [*curves, Curve("paper's gains", *cross)]}
