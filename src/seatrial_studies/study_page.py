@@ -170,9 +170,10 @@ class StudyPage(Generic[EvidenceT]):
 
     @cached_property
     def common_facts(self) -> Facts:
-        """Return the facts that every row may name: limits, phrases, and those of the file's own evidence."""
+        """Return what every row may name: the evidence, limits, phrases, and facts of the file's own evidence."""
         (facts,) = self._computed(self.file.evidence)
-        return _with_phrases(shared_phrases() | self.file.phrases, {**self.file.limits, **facts})
+        known = _merged(({"evidence": self.evidence}, self.file.limits, facts))
+        return _with_phrases(shared_phrases() | self.file.phrases, known)
 
     def facts_of(self, row: PageRow) -> Iterator[Facts]:
         """Return the facts for each time that the row stands on the page."""

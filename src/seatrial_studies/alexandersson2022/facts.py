@@ -39,14 +39,9 @@ def _deviations(turn: Turn, side: str) -> dict[str, float]:
 
 @FACTS.declare
 def zigzag(reproduction: BenchmarkReproduction) -> Facts:
-    """Errors of the run held out, and times."""
+    """Errors of the run held out."""
     rms = reproduction.fit.validation[0].rms
-    return {
-        "heading": rms["psi_deg"],
-        "position": rms["position_m"],
-        "warm_fit_s": reproduction.warm_fit_s,
-        "elapsed_s": reproduction.fit.elapsed_s,
-    }
+    return {"heading": rms["psi_deg"], "position": rms["position_m"]}
 
 
 @FACTS.declare
@@ -205,7 +200,6 @@ def shares(reproduction: BenchmarkReproduction) -> Facts:
     )
     mean = ("mean of the runs left out", None, 100.0 * coverage.heading_share, None, None)
     return {
-        "left_out_share": coverage.heading_share,
         "held_out_share": held,
         "is_held": held >= HELD_OUT_SHARE,
         "rows": [*left_out_rows, mean, *held_out],

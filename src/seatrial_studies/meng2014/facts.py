@@ -93,38 +93,20 @@ def accuracy(evidence: CloudSwarmEvidence) -> Facts:
     cloud = evidence.off_centre(ICPSO)
     return {
         "b53": [float(f.mean_error[COEFFICIENTS.index("b53")]) for f in cloud.values()],
-        "swarm_ratio": evidence.swarm_ratio,
-        "bound_ratio": evidence.output_error_ratio,
         "exact_error": max(float(np.max(np.abs(o.noise_free_errors))) for o in fits),
         "evaluations": evaluations,
         "simulated": evaluations * (1 + len(COEFFICIENTS)),
         "judged": int(cloud[HEADINGS[0]].evaluations[0]),
-        "time_ratio": evidence.time_ratio,
-        "simulation_ratio": evidence.simulation_ratio,
     }
 
 
 @FACTS.declare
 def weight(evidence: CloudSwarmEvidence) -> Facts:
     """What the printed constants let the cloud do to the inertia weight."""
-    settings, cloud = CloudSettings(), evidence.cloud_weight
-    at_A, at_B = cloud.at_ends
-    low, high = cloud.central
-    below, within, above = cloud.band_shares
-    return {
-        "settings": settings,
-        "expectation": 5 * settings.w1 - settings.w2,
-        "at_A": at_A,
-        "at_B": at_B,
-        "used": abs(at_A - at_B) / (settings.w1 - settings.w2),
-        "low": low,
-        "high": high,
-        "mean": cloud.mean,
-        "deviation": cloud.deviation,
-        "below": below,
-        "within": within,
-        "above": above,
-    }
+    settings = CloudSettings()
+    at_A, at_B = evidence.cloud_weight.at_ends
+    used = abs(at_A - at_B) / (settings.w1 - settings.w2)
+    return {"settings": settings, "expectation": 5 * settings.w1 - settings.w2, "used": used}
 
 
 @FACTS.declare
@@ -141,12 +123,6 @@ def error_shares(evidence: CloudSwarmEvidence) -> Facts:
         "wide_within": float(np.mean(wide <= 0.05)),
         "wide_beyond": float(np.mean(wide > 0.1)),
     }
-
-
-@FACTS.declare
-def same_minimum(evidence: CloudSwarmEvidence) -> Facts:
-    """How often both swarms end at the same point."""
-    return {"same_share": evidence.same_minimum_share}
 
 
 @FACTS.declare

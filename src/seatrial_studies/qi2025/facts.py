@@ -79,7 +79,6 @@ def searches(evidence: WildHorseEvidence) -> Facts:
         "pso_worse": [f"{h}°" for h, p, w in zip(HEADINGS, paper[PSO], paper[WHO], strict=True) if p > w],
         "headings": len(HEADINGS),
         "runs": {s.name: evidence.run_count(s) for s in reproduction.settings},
-        "run_count": reproduction.run_count,
         "median_tens": [100.0 * float(np.median(runs.tens)) for runs in reproduction.ten_runs.values()],
         "repeats": len(next(iter(reproduction.ten_runs.values())).tens),
         "judged": {a: evidence.evaluations(a) for a in SearchAlgorithm},
@@ -88,7 +87,6 @@ def searches(evidence: WildHorseEvidence) -> Facts:
         "search_seconds": ITERATIONS * STEP,
         "first_iterations": FIRST_ITERATIONS,
         "paper_setting": PAPER.value,
-        "is_quick": reproduction.is_quick,
         "quick_runs": QUICK_RUNS,
         "whole_runs": RUNS,
         "whole_repeats": TEN_RUN_REPEATS,
@@ -124,8 +122,6 @@ def fits(evidence: WildHorseEvidence) -> Facts:
     return {
         "worst_fit": max(float(np.max(np.abs(o.noise_free_errors))) for o in fit_results),
         "noisy_fits": [100.0 * float(np.mean(np.abs(o.noisy_errors))) for o in fit_results],
-        "bound_ratio": evidence.bound_ratio,
-        "fit_evaluations": evaluations,
         "fit_steps": simulated_steps(evaluations, has_slopes=True),
     }
 
@@ -137,7 +133,6 @@ def parts(evidence: WildHorseEvidence) -> Facts:
     named = {"IWHO": None, **{v.name: v for v in HerdVariant}}
     return {
         "parts": {s.name: {name: ablated.mean_errors(s, v) for name, v in named.items()} for s in ABLATION_SETTINGS},
-        "part_runs": evidence.ablation_runs,
         "whole_part_runs": ABLATION_RUNS,
         "at_centre": ablated.share_at_centre(PAPER, None),
     }
@@ -253,13 +248,6 @@ def saturation(evidence: WildHorseEvidence) -> Facts:
 
 
 @FACTS.declare
-def at_45(evidence: WildHorseEvidence) -> Facts:
-    """Motions at 45 degrees."""
-    heave, pitch = evidence.audit.median_extremes
-    return {"heave": heave, "pitch": pitch, "kinematic_pitch": evidence.audit.kinematic_pitch}
-
-
-@FACTS.declare
 def rebound(evidence: WildHorseEvidence) -> Facts:
     """How often the best fitness rises at 45 degrees, and its largest value late in the search, by setting."""
     settings = (SearchSetting.REMEMBERED, SearchSetting.DEGREES, MODEL_STATE)
@@ -277,10 +265,9 @@ def _first_fitness(evidence: WildHorseEvidence, setting: SearchSetting, algorith
 
 @FACTS.declare
 def spectrum(evidence: WildHorseEvidence) -> Facts:
-    """Significant heights of the spectrum with both exponents, m."""
-    printed, corrected = evidence.audit.spectrum_heights
-    misses = abs(printed / SIGNIFICANT_HEIGHT - 1.0)
-    return {"as_printed": printed, "corrected": corrected, "stated": SIGNIFICANT_HEIGHT, "misses": misses}
+    """How far the significant height by the printed exponent is from the stated one, m."""
+    printed, _ = evidence.audit.spectrum_heights
+    return {"stated": SIGNIFICANT_HEIGHT, "misses": abs(printed / SIGNIFICANT_HEIGHT - 1.0)}
 
 
 @FACTS.declare
@@ -304,8 +291,7 @@ def one_sample(evidence: WildHorseEvidence) -> Facts:
     """What one step of two motions identifies, and where a search by samples ends off centre."""
     searched = evidence.reproduction.searches[OFF_CENTRE, HEADINGS[0], IWHO]
     off = float(np.mean(np.abs(searched.errors[0])))
-    rank = evidence.audit.step_rank
-    return {"rank": rank, "unknowns": len(COEFFICIENTS), "fitness": searched.best_fitness[-1], "off": off}
+    return {"unknowns": len(COEFFICIENTS), "fitness": searched.best_fitness[-1], "off": off}
 
 
 @FACTS.declare
@@ -510,7 +496,6 @@ def frequencies(evidence: WildHorseEvidence) -> Facts:
         "rows": [(f"{h}°", audited.implied_frequencies[h], *ranges[h]) for h in HEADINGS],
         "nyquist": nyquist,
         "aliased": [f"{largest:.2f} at {h}°" for h, (_, largest) in ranges.items() if largest > nyquist],
-        "repetition": audited.repetition,
     }
 
 

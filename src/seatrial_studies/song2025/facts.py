@@ -137,7 +137,6 @@ def results(evidence: SupportVectorEvidence) -> Facts:
         "uncentred": _named(reproduction.noise_free_results, "Euler, differenced"),
         "central": _named(reproduction.noise_free_results, "central differences, least squares"),
         "machine": _named(reproduction.noise_free_results, "central differences, support vectors"),
-        "ours": ours,
         "best": evidence.best_regression(),
         "near_original": reproduction.nearest(ORIGINAL),
         "near_improved": reproduction.nearest(IMPROVED),
@@ -201,9 +200,7 @@ def discriminated(evidence: SupportVectorEvidence) -> Facts:
     cells = {run: evidence.comparison(IMPROVED, run).replayed_accuracy for run in PublishedManoeuvre}
     least = {run: min(accuracy.cc.values()) for run, accuracy in cells.items() if accuracy is not None}
     return {
-        "changes": evidence.discrimination.changes_text,
         "cc_loss": max(evidence.discrimination.cc_loss.values()),
-        "conditions": evidence.audit.table_3_conditions,
         "least_by_run": [{"run": run, "cc": cc} for run, cc in least.items()],
         "lowest_cc": min(least.values()),
     }
@@ -234,7 +231,6 @@ def speeds(evidence: SupportVectorEvidence) -> Facts:
         "factors": [s.factor for s in evidence.speeds],
         "growth": max(max(errors) / min(errors) for errors in by_name.values()),
         "by_craft": [{"name": name, "least": min(errors), "largest": max(errors)} for name, errors in by_name.items()],
-        "drift": evidence.turn_drift[0],
         "rows": [
             (s.factor, s.speed, *(100.0 * s.errors[n] for n in names), *(s.cc[n] for n in names))
             for s in evidence.speeds
@@ -250,8 +246,6 @@ def own_numbers(evidence: SupportVectorEvidence) -> Facts:
     confirming = [check.confirms_misprints for check in signs]
     return {
         "central": _named(reproduction.noise_free_results, "central differences, least squares").largest_error,
-        "exact": reproduction.output_error_noise_free.largest_error,
-        "bound_ratio": reproduction.output_error_ratio,
         "within_one_percent": int(np.sum(np.abs(reproduction.output_error_noisy.errors) <= 0.01)),
         "best": best,
         "gain": reproduction.errors_over_bound[best],
@@ -392,19 +386,12 @@ def misprints(evidence: SupportVectorEvidence) -> Facts:
     (cell,) = [i for i in audit.table_4_implications if i.run is zigzag and i.channel == "r"]
     fresh, salt = audit.table_1_masses
     return {
-        "turn": audit.reversed_turn,
-        "sway": audit.undamped_sway,
         "divergence": [{"run": run, "seconds": s} for run, s in audit.undamped_sway.divergence_times.items()],
-        "cc": audit.undamped_sway.corrected_cc,
-        "sides": audit.asymmetry,
-        "factors": audit.parenthesis_factors,
         "readings": {variant[0]: error for variant, error in worst.items() if "corrected" not in variant},
-        "norms": audit.equation_27_readings,
         "cell": cell,
         "has_amplitude": not math.isnan(cell.amplitude_ratio),
         "fresh": fresh,
         "salt": salt,
-        "thrust": audit.thrust,
         "confirming": sum(check.confirms_misprints for check in audit.sign_checks),
         "choices": len(audit.sign_checks),
     }
@@ -412,10 +399,8 @@ def misprints(evidence: SupportVectorEvidence) -> Facts:
 
 @FACTS.declare
 def cleaning_steps(evidence: SupportVectorEvidence) -> Facts:
-    """What each step of the cleaning takes, and what a shuffled split gives away."""
-    leakage = evidence.reproduction.split_leakage
-    rows = list(zip(*evidence.reproduction.cleaning, strict=True))
-    return {"rows": rows, "shuffled": leakage.shuffled_error, "blocks": leakage.block_error}
+    """What each step of the cleaning takes."""
+    return {"rows": list(zip(*evidence.reproduction.cleaning, strict=True))}
 
 
 @FACTS.declare

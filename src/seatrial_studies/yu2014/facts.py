@@ -198,11 +198,8 @@ def table_1(evidence: FinGainEvidence) -> Facts:
         "rate_ratio_at_22": at_22.genetic.rate / at_22.traditional.rate,
         "rows_at_90_differ": design.genetic.reduction != at_22.genetic.reduction,
         "row_count": len(TABLE_1),
-        "larger_rates": evidence.audit.larger_rates,
-        "lower_reductions": evidence.audit.lower_reductions,
         "contradictory_count": len(evidence.audit.contradictory_rows),
         "drop": design.traditional.reduction - design.genetic.reduction,
-        "rms_variation": evidence.rms_variation,
         "chance": remaining * evidence.rms_variation * np.sqrt(2.0),
         "made": reductions,
         "points_at_22": reductions["WASHOUT"] - at_22.genetic.reduction,
@@ -232,8 +229,6 @@ def fits(evidence: FinGainEvidence) -> Facts:
     return {
         "of": by_reading,
         "baseline": {name: _gains(fit.baseline) for name, fit in by_reading.items()},
-        "log_error": evidence.best_fit.log_error,
-        "baseline_log_error": evidence.nearest_baseline.baseline_log_error,
         "rows": [
             (
                 PREAMPLIFIER_LABELS[f.preamplifier], "following" if f.following_is_zero else "head", f.K_q, f.level,
@@ -367,7 +362,6 @@ def five_gains(evidence: FinGainEvidence) -> Facts:
         "held_out_rate": held_out_rate,
         "held_out_count": len(held_out_rate),
         "faster_count": sum(rate > 1.0 for rate in held_out_rate),
-        "Ms": design.Ms,
         "gains": _gains(design.gains, (*GAIN_NAMES, "KB", "KL")),
         "band": band,
         "low": low,
@@ -390,7 +384,6 @@ def held_out_seas(evidence: FinGainEvidence) -> list[Facts]:
             "roll_ratio": c.roll_ratio,
             "rate_ratio": c.rate_ratio,
             "is_hardest": c.sea == design.hardest.sea,
-            "hardest": design.hardest,
         }
         for c in design.held_out_seas
     ]
@@ -489,7 +482,6 @@ def misprints(evidence: FinGainEvidence) -> Facts:
     audit = evidence.audit
     responses = {reading.name: response for reading, response in audit.roll_responses.items()}
     return {
-        "audit": audit,
         "rates": {reading.name: rates for reading, rates in audit.fin_rate_readings.items()},
         "of": responses,
         "variance": {name: response.fin**2 for name, response in responses.items()},
