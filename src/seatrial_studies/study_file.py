@@ -7,7 +7,7 @@ claim's rule: facts held against limits. Facts, formats and joints of wordings: 
 import tomllib
 from functools import cache
 from importlib.resources import files
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Generic, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
@@ -23,6 +23,21 @@ class Declared(BaseModel):
     """What a study file declares; unknown keys are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+ValueT = TypeVar("ValueT")
+
+
+class Setting(Declared, Generic[ValueT]):
+    """A number of the study, or several, with its source; `quick`: in the quick version, where that has another."""
+
+    value: ValueT
+    source: str
+    quick: ValueT | None = None
+
+    def of(self, *, quick: bool) -> ValueT:
+        """Return the value of a version."""
+        return self.quick if quick and self.quick is not None else self.value
 
 
 class Choice(Declared):
@@ -141,7 +156,8 @@ class StudyFile(Declared):
         assumptions: what the paper does not print, or our copy has lost: quantity, print, what stands in its place.
         deviations: what is done otherwise than printed: place, print, what is done, why.
         paper_figures: figures of the paper: content, titles of what shows the same here, or why nothing does.
-        settings, published: numbers for the study's own functions, which give them their types.
+        settings: numbers of the study, each with its source, which every row may name.
+        published: numbers of the paper; the study's own functions give them their types.
     """
 
     name: str
@@ -152,7 +168,7 @@ class StudyFile(Declared):
     evidence: tuple[str, ...] = ()
     limits: dict[str, float] = {}
     phrases: dict[str, Choice | Listing | str] = {}
-    settings: dict[str, Any] = {}
+    settings: dict[str, Setting[Any]] = {}
     published: dict[str, Any] = {}
     symbols: tuple[tuple[str, str, str, str], ...] = ()
     assumptions: tuple[tuple[str, str, str], ...] = ()
@@ -201,3 +217,15 @@ def read_study(name: str) -> StudyFile:
 def shared_phrases() -> dict[str, str]:
     """Return the phrases that every study may name."""
     return tomllib.loads(files("seatrial_studies").joinpath("shared.toml").read_text(encoding="utf-8"))["phrases"]
+
+
+def study_setting(study: str, name: str, kind: type[ValueT]) -> Setting[ValueT]:
+    """Return a setting of a study with a value of this type.
+
+    Raises:
+        InputError: the study has none of this name, or its value is of another type.
+    """
+    declared = read_study(study).settings
+    if name not in declared or not isinstance(declared[name].value, kind):
+        raise InputError(f"study.toml of {study} has no setting '{name}' of type {kind.__name__}; state it there")
+    return declared[name]

@@ -170,9 +170,10 @@ class StudyPage(Generic[EvidenceT]):
 
     @cached_property
     def common_facts(self) -> Facts:
-        """Return what every row may name: the evidence, limits, phrases, and facts of the file's own evidence."""
+        """Return what every row may name: evidence, settings, limits, phrases, and facts of the file's own evidence."""
         (facts,) = self._computed(self.file.evidence)
-        known = _merged(({"evidence": self.evidence}, self.file.limits, facts))
+        named = {"evidence": self.evidence, "settings": self.file.settings}
+        known = _merged((named, self.file.limits, facts))
         return _with_phrases(shared_phrases() | self.file.phrases, known)
 
     def facts_of(self, row: PageRow) -> Iterator[Facts]:

@@ -26,11 +26,11 @@ from seatrial_studies.alexandersson2022.reproduction import (
     LeftOutRun,
     PredictionCoverage,
     TurnInterval,
-    jackknife_error,
     median_noise,
     percent_deviation,
     published_range,
 )
+from seatrial_studies.cross_validation import jackknife_error
 from seatrial_studies.study_file import read_study
 from seatrial_studies.study_page import StudyPage
 

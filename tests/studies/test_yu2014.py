@@ -244,7 +244,7 @@ def test_claims_are_judged_in_the_context_they_were_made_in(study: Study) -> Non
 
 def test_random_and_fixed_weights_are_compared_from_the_same_first_generations() -> None:
     compared = compare_weights(WASHOUT, 0)
-    assert compared.J.shape == compared.volume.shape == (2, SEEDS)
+    assert compared.J.shape == compared.volume.shape == (2, SEEDS.value)
     assert np.all(compared.J[0] != compared.J[1]) and np.all((compared.volume > 0.0) & (compared.volume < 1.0))
     assert not (compared.is_better and compared.is_worse)
 

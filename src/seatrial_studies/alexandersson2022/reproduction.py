@@ -246,13 +246,6 @@ def leave_one_out(
     return tuple(made)
 
 
-def jackknife_error(values: Sequence[float]) -> float:
-    """Return the standard error from values with one run left out each (Tukey 1958, Ann. Math. Stat. 29, 614)."""
-    given = np.asarray(values, dtype=float)
-    count = len(given)
-    return math.sqrt((count - 1) / count * float(np.sum((given - given.mean()) ** 2)))
-
-
 # What the intervals are worth: the turns' beside MARIN's circles, the bands of 30 s windows beside the records.
 
 _MEASURES = {"advance_L": ("advance", "advance"), "tactical_diameter_L": ("tactical diameter", "diameter")}

@@ -68,9 +68,7 @@ def searches(evidence: CloudSwarmEvidence) -> Facts:
         ],
         "runs": reproduction.run_count,
         "iterations": reproduction.iterations,
-        "whole_runs": RUNS,
-        "whole_iterations": ITERATIONS,
-        "is_quick": (reproduction.run_count, reproduction.iterations) != (RUNS, ITERATIONS),
+        "is_quick": (reproduction.run_count, reproduction.iterations) != (RUNS.value, ITERATIONS.value),
     }
 
 
@@ -106,7 +104,7 @@ def weight(evidence: CloudSwarmEvidence) -> Facts:
     settings = CloudSettings()
     at_A, at_B = evidence.cloud_weight.at_ends
     used = abs(at_A - at_B) / (settings.w1 - settings.w2)
-    return {"settings": settings, "expectation": 5 * settings.w1 - settings.w2, "used": used}
+    return {"cloud_settings": settings, "expectation": 5 * settings.w1 - settings.w2, "used": used}
 
 
 @FACTS.declare

@@ -40,24 +40,18 @@ from seatrial_studies.heave_pitch_search import (
     with_physics_start,
 )
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE
+from seatrial_studies.study_file import read_study, study_setting
 
 # The paper's searches made again, beside plain particle swarms, in boxes about the truth and beside it.
 
-SOURCE = (
-    "Meng Fei, Xu Hongyang, Xie Zhibin: Parameter identification of ship longitudinal motions based on cloud particle "
-    "swarm optimization algorithm (in Chinese), Ship Science and Technology 2014(7), 37-40, "
-    "doi 10.3404/j.issn.1672-7649.2014.07.0083"
-)
+SOURCE = read_study("meng2014").source
 SwarmFactory = Callable[[Box, np.random.Generator], Population]
 # deg, headings of the paper's tables
 HEADINGS = (0, 45, 90, 135, 180)
-# m, significant height assumed for sea state 3
-SEA_STATE_3 = 0.88
+SEA_STATE_3 = study_setting("meng2014", "sea_state_3", float).value
 NOISE = (HEAVE_NOISE, PITCH_NOISE)
-# iterations and runs of each search; our choice
-ITERATIONS, QUICK_ITERATIONS, RUNS, QUICK_RUNS = 1000, 400, 5, 3
-# shares of the iterations that the shorter searches have; our choice
-SHORTER_SHARES = (0.2, 0.5)
+ITERATIONS, RUNS = study_setting("meng2014", "iterations", int), study_setting("meng2014", "runs", int)
+SHORTER_SHARES = study_setting("meng2014", "shorter_shares", list).value
 
 
 class SwarmAlgorithm(StrEnum):
@@ -126,7 +120,7 @@ class CloudSwarmReproduction:
 
 def reproduce_searches(*, quick: bool, seed: int, report_progress: ProgressReporter) -> CloudSwarmReproduction:
     """Five runs of 1000 iterations; `quick`: three of 400."""
-    runs, iterations = (QUICK_RUNS, QUICK_ITERATIONS) if quick else (RUNS, ITERATIONS)
+    runs, iterations = RUNS.of(quick=quick), ITERATIONS.of(quick=quick)
     report_progress("seas")
     seas = {heading: [_sea(heading, run, seed, NOISE) for run in range(runs)] for heading in HEADINGS}
     searches = {}
@@ -267,8 +261,7 @@ def _fitness_ratios(data: SearchData, box: Box, settings: CloudSettings, seed: l
 
 # Everything the verdicts rest on, and the few numbers they share.
 
-# relative difference of coefficients up to which two swarms have found the same minimum; our choice
-SAME_POINT = 1e-3
+SAME_POINT = study_setting("meng2014", "same_point", float).value
 
 
 @dataclass(frozen=True, eq=False)

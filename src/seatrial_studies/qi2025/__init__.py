@@ -9,9 +9,8 @@ from seatrial_studies.qi2025.evidence import WildHorseEvidence, centre_bias, con
 from seatrial_studies.qi2025.facts import FACTS
 from seatrial_studies.qi2025.published import audit
 from seatrial_studies.qi2025.reproduction import (
-    ABLATION_RUNS,
     FIGURE_HEADING,
-    QUICK_ABLATION_RUNS,
+    PART_RUNS,
     ablation,
     reproduce_searches,
 )
@@ -30,7 +29,7 @@ def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -
     report = report_progress or (lambda _: None)
     reproduction = reproduce_searches(quick=quick, seed=seed, report_progress=report)
     report("IWHO with parts left out")
-    ablated = ablation(reproduction, seed, QUICK_ABLATION_RUNS if quick else ABLATION_RUNS)
+    ablated = ablation(reproduction, seed, PART_RUNS.of(quick=quick))
     report("audit and our own fits")
     fits = {h: output_error_results(reproduction.seas[h], seed) for h in HEADINGS}
     audited, held, centred = (

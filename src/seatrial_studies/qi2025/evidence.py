@@ -39,12 +39,12 @@ from seatrial_studies.qi2025.reproduction import (
     optimisers,
 )
 from seatrial_studies.seaway import HEADINGS, SIGNIFICANT_HEIGHT, SeawayScenario, ship, simulate_seaway_run
+from seatrial_studies.study_file import study_setting
 
 # What a search owes to the middle of its box: unknowns written as shares of their range, zero at the truth or not.
 
-CENTRE_RUNS = 3
-# the truth a quarter of the box's width from its middle
-OFF_CENTRE_SHIFT = 0.5
+CENTRE_RUNS = study_setting("qi2025", "centre_runs", int).value
+OFF_CENTRE_SHIFT = study_setting("qi2025", "off_centre_shift", float).value
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,8 +122,7 @@ def hold_bias(seed: int) -> dict[int, HoldBias]:
 
 # Figures 6 and 7: models that are carried on while their coefficients are identified, and one left at a guess.
 
-# guesses drawn from the box of the search; our choice
-GUESSES = 20
+GUESSES = study_setting("qi2025", "guesses", int).value
 _MOTIONS = [0, 2]
 
 

@@ -11,7 +11,6 @@ from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
 from seatrial_studies.controller_cost import controller_rows, largest_excess, uncontrolled_excess
 from seatrial_studies.heave_pitch_search import STEP, is_smaller
 from seatrial_studies.qi2025.evidence import (
-    CENTRE_RUNS,
     WildHorseEvidence,
     count_below_printed,
     simulated_steps,
@@ -27,27 +26,22 @@ from seatrial_studies.qi2025.published import (
     true_values,
 )
 from seatrial_studies.qi2025.reproduction import (
-    ABLATION_RUNS,
     ABLATION_SETTINGS,
-    BOOTSTRAP_TENS,
     FAMILY_PROBABILITY,
     FIGURE_HEADING,
     ITERATIONS,
-    QUICK_RUNS,
-    RUNS,
-    TEN_RUN_REPEATS,
     TEN_RUN_SETTINGS,
     HerdVariant,
     SearchSetting,
 )
 from seatrial_studies.seaway import HEADINGS, SHIP, SIGNIFICANT_HEIGHT, SPEED
+from seatrial_studies.study_file import study_setting
 from seatrial_studies.study_page import Facts, FactTable
 
 FACTS = FactTable[WildHorseEvidence]()
 PSO, WHO, IWHO = SearchAlgorithm
 PAPER, MODEL_STATE, OFF_CENTRE = SearchSetting.PAPER, SearchSetting.MODEL_STATE, SearchSetting.OFF_CENTRE
-# iterations in which the fitness falls from that of random places, left out of its largest value; our choice
-FIRST_ITERATIONS = 20
+FIRST_ITERATIONS = study_setting("qi2025", "first_iterations", int).value
 # the coefficients of figures 8 to 11, with their units and the power of ten that the tables print
 _HISTORY_PAIRS = {
     ("a33", "b33"): (("kg", "kg/s"), 1e5, "10⁵"),
@@ -83,17 +77,10 @@ def searches(evidence: WildHorseEvidence) -> Facts:
         "repeats": len(next(iter(reproduction.ten_runs.values())).tens),
         "judged": {a: evidence.evaluations(a) for a in SearchAlgorithm},
         "whole_record_steps": simulated_steps(evidence.evaluations(IWHO), has_slopes=False),
-        "search_iterations": ITERATIONS,
         "search_seconds": ITERATIONS * STEP,
-        "first_iterations": FIRST_ITERATIONS,
         "paper_setting": PAPER.value,
-        "quick_runs": QUICK_RUNS,
-        "whole_runs": RUNS,
-        "whole_repeats": TEN_RUN_REPEATS,
         "ten_run_settings": [s.value for s in TEN_RUN_SETTINGS],
         "absent": [s.value for s in SearchSetting if s not in reproduction.settings],
-        "drawn": BOOTSTRAP_TENS,
-        "family": FAMILY_PROBABILITY,
         "rarity": 100.0 * FAMILY_PROBABILITY / len(HEADINGS),
     }
 
@@ -133,7 +120,6 @@ def parts(evidence: WildHorseEvidence) -> Facts:
     named = {"IWHO": None, **{v.name: v for v in HerdVariant}}
     return {
         "parts": {s.name: {name: ablated.mean_errors(s, v) for name, v in named.items()} for s in ABLATION_SETTINGS},
-        "whole_part_runs": ABLATION_RUNS,
         "at_centre": ablated.share_at_centre(PAPER, None),
     }
 
@@ -191,7 +177,6 @@ def centre(evidence: WildHorseEvidence) -> Facts:
         "aside": aside,
         "algorithms": [{"name": a, "at_zero": zero[a], "aside": aside[a]} for a in SearchAlgorithm],
         "rows": [(str(a), 100.0 * zero[a], 100.0 * aside[a]) for a in SearchAlgorithm],
-        "centre_runs": CENTRE_RUNS,
     }
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from seatrial.core.values import Array, Finding, ProgressReporter, Record, Severity
 from seatrial.data.check import with_standard_signs
+from seatrial_studies.cross_validation import jackknife_error
 from seatrial_studies.section2d.modes import (
     HEAVE,
     ROLL,
@@ -16,7 +17,6 @@ from seatrial_studies.section2d.modes import (
     ModeFit,
     SwayStiffness,
     fit_mode,
-    jackknife_error,
     observation,
     split_periods,
     sway_stiffness,

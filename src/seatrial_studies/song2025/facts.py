@@ -36,8 +36,6 @@ from seatrial_studies.song2025.published import (
     printed_coefficients,
 )
 from seatrial_studies.song2025.reproduction import (
-    BAD_SHARE,
-    SPIKE,
     CleaningAblation,
     EstimatorResult,
     SupportVectorReproduction,
@@ -427,7 +425,7 @@ def steps(evidence: SupportVectorEvidence) -> Facts:
 def planted_rows(evidence: SupportVectorEvidence) -> Facts:
     """Errors with bad data planted, cleaned and not."""
     rows = [(p.kind, p.spoiled, *_planted(p.cleaned), *_planted(p.uncleaned)) for p in evidence.ablation.planted]
-    return {"rows": rows, "share": 100.0 * BAD_SHARE, "spike": SPIKE}
+    return {"rows": rows}
 
 
 def _planted(result: EstimatorResult) -> tuple[float | str, float | str]:

@@ -39,6 +39,7 @@ from seatrial_studies.song2025.published import (
     replay_inputs,
     simulate_manoeuvre,
 )
+from seatrial_studies.study_file import study_setting
 
 # Simulations with the columns of table 2: zigzags and a turn compared with the truth's: accuracy, forces, drift.
 
@@ -170,7 +171,7 @@ def fisher_information(craft: Model, record: Record) -> Array:
 
 # Conclusion 1, a wider range of speed: coefficients found at one speed predict the craft at half to twice of it.
 
-SPEED_FACTORS = (0.5, 0.75, 1.0, 1.5, 2.0)  # of the jet velocity, and so of the approach speed; our choice
+SPEED_FACTORS = tuple(study_setting("song2025", "speed_factors", list).value)
 
 
 @dataclass(frozen=True, eq=False)

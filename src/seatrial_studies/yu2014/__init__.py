@@ -7,6 +7,7 @@ import numpy as np
 from seatrial.core.results import Study
 from seatrial.core.values import ProgressReporter
 from seatrial.physics.loops import Preamplifier
+from seatrial_studies.study_file import study_setting
 from seatrial_studies.study_page import study_from
 from seatrial_studies.yu2014.audit import audit
 from seatrial_studies.yu2014.facts import FACTS, FinGainEvidence, responses_at_table_1
@@ -20,7 +21,6 @@ from seatrial_studies.yu2014.published import (
 from seatrial_studies.yu2014.reproduction import compare_energy, fit_table_1, rms_variation, simulate_histories
 from seatrial_studies.yu2014.searches import (
     MS_LIMIT,
-    QUICK_SEEDS,
     SEEDS,
     SETTINGS,
     compare_weights,
@@ -33,8 +33,7 @@ from seatrial_studies.yu2014.searches import (
     time_domain_seconds,
 )
 
-# fin-rate variance allowed, over the paper's; our choice
-RATES = np.linspace(0.5, 1.75, 11)
+RATES = np.linspace(*study_setting("yu2014", "rates", list).value)
 
 
 def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -> Study:
@@ -60,11 +59,11 @@ def _evidence(*, quick: bool, seed: int, report: ProgressReporter) -> FinGainEvi
     energies = tuple(compare_energy(fit) for fit in fits)
     regulators = {r: regulator_settings(r) for r in Preamplifier}
     report("the published search")
-    searched = tuple(search_over_seeds(setting, QUICK_SEEDS if quick else SEEDS, seed) for setting in SETTINGS)
+    searched = tuple(search_over_seeds(setting, SEEDS.of(quick=quick), seed) for setting in SETTINGS)
     report("the published search with fixed weights")
     weights = {r: compare_weights(r, seed) for r in Preamplifier}
     report("one search for all six conditions")
-    joint = {r: joint_optimum(r, QUICK_SEEDS, seed) for r in Preamplifier}
+    joint = {r: joint_optimum(r, SEEDS.of(quick=True), seed) for r in Preamplifier}
     if not quick:
         report("the search by 10,000 records of 1000 s, once")
     by_records = None if quick else time_domain_search(Preamplifier.WASHOUT, seed)

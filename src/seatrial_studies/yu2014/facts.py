@@ -35,9 +35,7 @@ from seatrial_studies.yu2014.reproduction import (
     best_fit_of,
 )
 from seatrial_studies.yu2014.searches import (
-    BITS,
     BOX,
-    SEEDS,
     FinGainSearches,
     FiveGainComparison,
     FiveGainDesign,
@@ -278,7 +276,6 @@ def search(evidence: FinGainEvidence) -> Facts:
         "narrowest": float(washout.relative_spread.min()),
         "smaller": smaller,
         "larger": larger,
-        "pairs": SEEDS,
     }
 
 
@@ -414,7 +411,6 @@ def scatter(evidence: FinGainEvidence) -> Facts:
     """Answers of the published search in every setting, over seeds."""
     return {
         "seeds": len(evidence.searches[0].Ms),
-        "bits": BITS,
         "box": [f"{n} {low:g} to {high:g}" for n, low, high in zip(GAIN_NAMES, BOX.lower, BOX.upper, strict=True)],
         "published": PUBLISHED_VALUES,
         "rows": [

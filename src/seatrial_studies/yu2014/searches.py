@@ -25,6 +25,7 @@ from seatrial.physics.loops import Performance, Preamplifier, TransferLoop, five
 from seatrial.physics.sea import Spacing, bretschneider, ittc, jonswap, realise
 from seatrial.physics.simulate import loop_record
 from seatrial_studies.heave_pitch_search import is_smaller
+from seatrial_studies.study_file import study_setting
 from seatrial_studies.yu2014.published import (
     DESIGN_SEA,
     KNOT,
@@ -51,8 +52,7 @@ from seatrial_studies.yu2014.reproduction import LINES, response_to_slope
 # The published genetic algorithm on the published objectives, over seeds.
 
 # searches in the full and in the quick version; our choice
-SEEDS, QUICK_SEEDS = 12, 4
-BITS = 17
+SEEDS, BITS = study_setting("yu2014", "seeds", int), study_setting("yu2014", "bits", int).value
 BOX = Box(LOWER, UPPER)
 FRAGILE_MS = 2.0
 
@@ -184,7 +184,7 @@ def compare_weights(preamplifier: Preamplifier, seed: int) -> WeightComparison:
             genetic_run(
                 objectives, BOX, GeneticSettings(bits=BITS, largest_weight=most), np.random.default_rng([seed, k])
             )
-            for k in range(SEEDS)
+            for k in range(SEEDS.value)
         ]
         for most in (GeneticSettings.largest_weight, 1)  # integers from 1 to 1: equal weights
     ]

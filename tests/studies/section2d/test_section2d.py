@@ -14,10 +14,11 @@ from seatrial.core.results import Verdict
 from seatrial.core.values import InputError, Ship
 from seatrial.data.folder.document import document, strict_json
 from seatrial.estimation.sea import WaveResponses, fit_section
+from seatrial_studies.cross_validation import jackknife_error
 from seatrial_studies.section2d import study
 from seatrial_studies.section2d.analysis import SectionAnalysis, analyse_records
 from seatrial_studies.section2d.facts import FACTS, largest_errors
-from seatrial_studies.section2d.modes import CROSS_AXIS, HEAVE, REPEATABILITY, jackknife_error, split_periods
+from seatrial_studies.section2d.modes import CROSS_AXIS, HEAVE, REPEATABILITY, split_periods
 from seatrial_studies.section2d.responses import (
     BEAM,
     DEPTH,
