@@ -35,7 +35,7 @@ class Setting(Declared, Generic[ValueT]):
     source: str
     quick: ValueT | None = None
 
-    def of(self, *, quick: bool) -> ValueT:
+    def in_version(self, *, quick: bool) -> ValueT:
         """Return the value of a version."""
         return self.quick if quick and self.quick is not None else self.value
 

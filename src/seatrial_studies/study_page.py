@@ -18,7 +18,7 @@ import numpy as np
 
 from seatrial.core.results import Bars, Check, Claim, Figure, Matrix, Prediction, Study, Table
 from seatrial.core.text import significant
-from seatrial.core.values import Finding, InputError, versions
+from seatrial.core.values import Finding, InputError, spelling_hint, versions
 from seatrial_studies.study_file import (
     Case,
     CheckRow,
@@ -72,6 +72,16 @@ class FactTable(Generic[EvidenceT]):
             raise ValueError(f"two functions compute '{name}'; rename one")
         self.functions[name] = function
         return function
+
+    def function(self, key: str) -> FactFunction[EvidenceT]:
+        """Return the function of a key.
+
+        Raises:
+            InputError: there is none; the nearest is named.
+        """
+        if key not in self.functions:
+            raise InputError(f"no function computes the evidence '{key}'{spelling_hint(key, list(self.functions))}")
+        return self.functions[key]
 
 
 class _WordingFormatter(Formatter):
@@ -173,8 +183,8 @@ class StudyPage(Generic[EvidenceT]):
         """Return what every row may name: evidence, settings, limits, phrases, and facts of the file's own evidence."""
         (facts,) = self._computed(self.file.evidence)
         named = {"evidence": self.evidence, "settings": self.file.settings}
-        known = _merged((named, self.file.limits, facts))
-        return _with_phrases(shared_phrases() | self.file.phrases, known)
+        common = _merged((named, self.file.limits, facts))
+        return _with_phrases(shared_phrases() | self.file.phrases, common)
 
     def facts_of(self, row: PageRow) -> Iterator[Facts]:
         """Return the facts for each time that the row stands on the page."""
@@ -186,7 +196,7 @@ class StudyPage(Generic[EvidenceT]):
 
     def _computed(self, keys: Sequence[str]) -> Iterator[dict[str, Any]]:
         """Return each combination of the groups of facts that the functions of these keys give."""
-        results = [self.fact_table.functions[key](self.evidence) for key in keys]
+        results = [self.fact_table.function(key)(self.evidence) for key in keys]
         groups = [[facts] if isinstance(facts, Mapping) else facts for facts in results]
         return (_merged(group) for group in itertools.product(*groups))
 

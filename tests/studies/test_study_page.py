@@ -146,6 +146,12 @@ def test_one_row_does_not_take_one_fact_from_two_functions() -> None:
         StudyPage(declared, table, 0).claims()
 
 
+def test_evidence_that_no_function_computes_is_refused_with_the_nearest_key() -> None:
+    declared = parse_study((HEAD + CLAIM + CHECK + TABLES).replace('"turns"', '"turn"'), "study.toml")
+    with pytest.raises(InputError, match=r"no function computes the evidence 'turn'.*turns"):
+        StudyPage(declared, FACTS, {"port": 0.05}).claims()
+
+
 def test_two_functions_may_not_have_one_name() -> None:
     with pytest.raises(ValueError, match="rename one"):
         FACTS.declare(turns)

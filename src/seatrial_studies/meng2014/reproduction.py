@@ -120,7 +120,7 @@ class CloudSwarmReproduction:
 
 def reproduce_searches(*, quick: bool, seed: int, report_progress: ProgressReporter) -> CloudSwarmReproduction:
     """Five runs of 1000 iterations; `quick`: three of 400."""
-    runs, iterations = RUNS.of(quick=quick), ITERATIONS.of(quick=quick)
+    runs, iterations = RUNS.in_version(quick=quick), ITERATIONS.in_version(quick=quick)
     report_progress("seas")
     seas = {heading: [_sea(heading, run, seed, NOISE) for run in range(runs)] for heading in HEADINGS}
     searches = {}

@@ -29,7 +29,7 @@ def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -
     report = report_progress or (lambda _: None)
     reproduction = reproduce_searches(quick=quick, seed=seed, report_progress=report)
     report("IWHO with parts left out")
-    ablated = ablation(reproduction, seed, PART_RUNS.of(quick=quick))
+    ablated = ablation(reproduction, seed, PART_RUNS.in_version(quick=quick))
     report("audit and our own fits")
     fits = {h: output_error_results(reproduction.seas[h], seed) for h in HEADINGS}
     audited, held, centred = (

@@ -24,6 +24,7 @@ from seatrial_studies.heave_pitch_search import (
     with_physics_start,
 )
 from seatrial_studies.qi2025.published import (
+    SATURATED_RANGE,
     SearchAlgorithm,
     WildHorseAudit,
     printed_error,
@@ -225,8 +226,6 @@ def controllers(
 
 # a value counts as on its bound where it is off by no more than this share of it
 ON_BOUND_SHARE = 0.005
-# of the printed means at the lower bound, the least far out (per cent)
-SATURATED_FROM_PERCENT = -9.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -268,9 +267,7 @@ class WildHorseEvidence:
     def saturated_means(self, setting: SearchSetting) -> int:
         """Of WHO's 16 means at 90 and 135 degrees, those as near the lower bound as the printed ones."""
         found = [self.reproduction.searches[setting, h, SearchAlgorithm.WHO] for h in (90, 135)]
-        return sum(
-            int(np.sum(100.0 * (f.points.mean(axis=0) / f.truth - 1.0) <= SATURATED_FROM_PERCENT)) for f in found
-        )
+        return sum(int(np.sum(100.0 * (f.points.mean(axis=0) / f.truth - 1.0) <= SATURATED_RANGE[1])) for f in found)
 
     def evaluations(self, algorithm: SearchAlgorithm) -> int:
         """Return the candidates that a run judges in the paper's setting."""

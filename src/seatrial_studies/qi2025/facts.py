@@ -35,10 +35,11 @@ from seatrial_studies.qi2025.reproduction import (
     SearchSetting,
 )
 from seatrial_studies.seaway import HEADINGS, SHIP, SIGNIFICANT_HEIGHT, SPEED
-from seatrial_studies.study_file import study_setting
+from seatrial_studies.study_file import read_study, study_setting
 from seatrial_studies.study_page import Facts, FactTable
 
 FACTS = FactTable[WildHorseEvidence]()
+LIMITS = read_study("qi2025").limits
 PSO, WHO, IWHO = SearchAlgorithm
 PAPER, MODEL_STATE, OFF_CENTRE = SearchSetting.PAPER, SearchSetting.MODEL_STATE, SearchSetting.OFF_CENTRE
 FIRST_ITERATIONS = study_setting("qi2025", "first_iterations", int).value
@@ -218,7 +219,7 @@ def order(_: WildHorseEvidence) -> Facts:
         "who_smaller": int(np.sum(who < iwho)),
         "compared": pso.size,
         "iwho": iwho.ravel(),
-        "below_half": int(np.sum(iwho < 0.5)),
+        "below_half": int(np.sum(iwho < LIMITS["half_percent"])),
     }
 
 
@@ -320,7 +321,7 @@ def convergence(evidence: WildHorseEvidence) -> Facts:
     searched = evidence.reproduction.searches[PAPER, FIGURE_HEADING, IWHO]
     errors = 100.0 * np.abs(searched.traces / searched.truth - 1.0)
     half, end = (errors[:, min(round(t / STEP), errors.shape[1] - 1)] for t in (50.0, ITERATIONS * STEP))
-    near_half, near_end = (float(np.mean(e <= 1.5)) for e in (half, end))
+    near_half, near_end = (float(np.mean(e <= LIMITS["about_one_percent"])) for e in (half, end))
     return {
         "traced": len(errors),
         "near_half": near_half,

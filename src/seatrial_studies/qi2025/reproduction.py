@@ -182,7 +182,7 @@ def reproduce_searches(*, quick: bool, seed: int, report_progress: ProgressRepor
             found |= _search_setting(setting, heading, seas[heading][: _run_count(setting, heading, quick)], seed)
     if report_progress:
         report_progress("the ten runs again")
-    repeats = REPEATS.of(quick=quick)
+    repeats = REPEATS.in_version(quick=quick)
     again = {
         h: _repeat_ten_runs(h, found[SearchSetting.PAPER, h, SearchAlgorithm.IWHO], repeats, seed) for h in HEADINGS
     }
@@ -195,7 +195,7 @@ def _run_count(setting: SearchSetting, heading: int, quick: bool) -> int:
         return RUNS
     if heading == FIGURE_HEADING:
         return 1
-    return FEWER_RUNS.of(quick=quick and setting not in TEN_RUN_SETTINGS)
+    return FEWER_RUNS.in_version(quick=quick and setting not in TEN_RUN_SETTINGS)
 
 
 def _repeat_ten_runs(heading: int, first_ten: RepeatedSearches, count: int, seed: int) -> TenRuns:

@@ -258,12 +258,12 @@ def reproduce_regressions(
         for pipeline, column in (
             (replace(improved, operator=Euler()), Table2Column.ORIGINAL), (improved, Table2Column.IMPROVED)
         )
-        for c in SVR_PENALTIES.of(quick=quick)
-        for t in TUBE_WIDTHS.of(quick=quick)
+        for c in SVR_PENALTIES.in_version(quick=quick)
+        for t in TUBE_WIDTHS.in_version(quick=quick)
     )  # fmt: skip
     differences = _sweep(QUASI_DIFFERENCES, lambda rho: (clean, _least_squares(Differenced(Euler(), rho))))
     report("noise")
-    noise = _noise_sweep(clean, VELOCITY_NOISE.of(quick=quick), seed)
+    noise = _noise_sweep(clean, VELOCITY_NOISE.in_version(quick=quick), seed)
     report("output error")
     exact, ours, errors = _output_error(measured)
     ratio = float(np.sqrt(np.mean((ours.errors / errors) ** 2)))

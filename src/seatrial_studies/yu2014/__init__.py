@@ -59,11 +59,11 @@ def _evidence(*, quick: bool, seed: int, report: ProgressReporter) -> FinGainEvi
     energies = tuple(compare_energy(fit) for fit in fits)
     regulators = {r: regulator_settings(r) for r in Preamplifier}
     report("the published search")
-    searched = tuple(search_over_seeds(setting, SEEDS.of(quick=quick), seed) for setting in SETTINGS)
+    searched = tuple(search_over_seeds(setting, SEEDS.in_version(quick=quick), seed) for setting in SETTINGS)
     report("the published search with fixed weights")
     weights = {r: compare_weights(r, seed) for r in Preamplifier}
     report("one search for all six conditions")
-    joint = {r: joint_optimum(r, SEEDS.of(quick=True), seed) for r in Preamplifier}
+    joint = {r: joint_optimum(r, SEEDS.in_version(quick=True), seed) for r in Preamplifier}
     if not quick:
         report("the search by 10,000 records of 1000 s, once")
     by_records = None if quick else time_domain_search(Preamplifier.WASHOUT, seed)
