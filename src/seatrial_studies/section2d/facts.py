@@ -76,13 +76,6 @@ def largest_errors(fit: ModeFit, shortest: float = LEAST_CHECK_PERIOD_S) -> tupl
 
 
 @FACTS.declare
-def documented(_: SectionAnalysis) -> Facts:
-    """What every row may name: the documented values."""
-    low, high = SWAY_STIFFNESS
-    return {"spring_low": low, "spring_high": high, "rig_damping": RIG_DAMPING, "GM": GM, "KG": KG, "depth": DEPTH}
-
-
-@FACTS.declare
 def modes(analysis: SectionAnalysis) -> list[Facts]:
     """Natural periods beside the documented ones, and the largest errors at held-out periods."""
     groups = []

@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -14,13 +14,19 @@ from seatrial.core.values import Array, InputError, Record
 from seatrial.data.check import with_standard_signs
 from seatrial.data.read import ColumnSpec, Layout, read_record
 from seatrial.physics.hydro import LewisForm, group_velocity, wavenumber
+from seatrial_studies.study_file import study_setting
 
 # What is documented of the flume, the section and its holding; how the files are laid out.
 
+
+def _documented(*names: str) -> Iterator[float]:
+    return (study_setting("section2d", name, float).value for name in names)
+
+
 RHO, G = 1000.0, 9.81
-BEAM, DRAUGHT, LENGTH = 0.40, 0.20, 0.586
-MASS, KG, GM, ROLL_RADIUS = 46.8, 0.108, 0.0629, 0.36 * BEAM
-DEPTH, WIDTH, TO_MODEL, ROUND_TRIP = 1.0, 0.6, 7.0, 12.0
+BEAM, DRAUGHT, LENGTH, MASS, KG, GM = _documented("beam", "draught", "length", "mass", "KG", "GM")
+DEPTH, WIDTH, TO_MODEL, ROUND_TRIP = _documented("depth", "width", "to_model", "round_trip")
+ROLL_RADIUS = study_setting("section2d", "roll_radius", float).value * BEAM
 AREA_COEFFICIENT = MASS / (RHO * BEAM * DRAUGHT * LENGTH)
 FORM = LewisForm.from_dimensions(BEAM, DRAUGHT, AREA_COEFFICIENT)
 
@@ -30,10 +36,9 @@ ROLL_INERTIA = MASS * ROLL_RADIUS**2
 ROLL_AXIS = DRAUGHT - KG
 
 # documented truth
-HEAVE_PERIOD, ROLL_PERIOD = 1.17, 1.26
-SWAY_STIFFNESS = (59.2, 60.9)
-RIG_DAMPING = 8.7
-HEIGHTS = {1: 0.024, 2: 0.040}
+HEAVE_PERIOD, ROLL_PERIOD, RIG_DAMPING = _documented("heave_period", "roll_period", "rig_damping")
+SWAY_STIFFNESS = tuple(study_setting("section2d", "sway_stiffness", list).value)
+HEIGHTS = dict(enumerate(study_setting("section2d", "heights", list).value, start=1))
 
 # not documented: a search over all spacings leaves this one arrangement of the probes (the mirrored one apart)
 PROBES = ("zeta_1", "zeta_2", "zeta_3", "zeta_4")
