@@ -22,16 +22,15 @@ from seatrial.estimation.estimate.settings import IntervalMethod
 from seatrial.estimation.identify.identify import identify
 from seatrial.estimation.predict.windows import HoldoutProtocol
 from seatrial_studies.alexandersson2022.reproduction import (
-    HALF_WIDTH_LIMIT,
-    HELD_OUT_SHARE,
-    SHARE_LIMITS,
     SIDES,
     WINDOW_S,
     band_coverage,
     holdout_windows,
     simulated_turn_intervals,
 )
+from seatrial_studies.study_file import read_study
 
+LIMITS = read_study("alexandersson2022").limits
 TRIAL = Path(__file__).parents[1] / "examples" / "kvlcc2_hsva.toml"
 SECONDS = 60.0
 
@@ -43,7 +42,7 @@ def turn_lines(fit: Fit, kind: str) -> Iterator[Line]:
     made = [m for side in SIDES for m in simulated_turn_intervals(fit, side, approach)]
     for m in made:
         what, is_limited = f"{kind}: {m.measure} to {m.side}, half width", m.measure == "tactical diameter"
-        yield at_most(what, m.half_width, "%", HALF_WIDTH_LIMIT) if is_limited else Line(what, m.half_width, "%")
+        yield at_most(what, m.half_width, "%", LIMITS["half_width"]) if is_limited else Line(what, m.half_width, "%")
     yield Line(f"{kind}: MARIN's values inside", sum(m.contains_measured for m in made), f"of {len(made)}")
     measures = [m for p in fit.validation for m in p.measures.values() if None not in (m.measured, m.lower, m.upper)]
     measures = [m for m in measures if m.upper != m.lower]
@@ -57,11 +56,11 @@ def band_lines(estimation: Estimation, train: Sequence[TrialRecord], held: Seque
         [c.shares["psi"] for c in one]
         for one in band_coverage(holdout_windows(estimation, train, held, HoldoutProtocol(window_s=WINDOW_S)))
     )
-    low, high = SHARE_LIMITS
+    low, high = LIMITS["least_share"], LIMITS["largest_share"]
     share = float(np.mean(within))
     yield Line("headings inside, runs left out", share, "", f"{low:g} to {high:g}", low <= share <= high)
     yield Line("headings inside, worst run left out", min(within), "")
-    yield at_least("headings inside, Z_35_05", float(np.mean(beyond)), "", HELD_OUT_SHARE)
+    yield at_least("headings inside, Z_35_05", float(np.mean(beyond)), "", LIMITS["held_out_share"])
 
 
 def lines() -> Iterator[Line]:

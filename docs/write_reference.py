@@ -32,8 +32,8 @@ NOTATION_HEAD = ("symbol", "meaning", "unit", "frame", "positive")
 KEYS = """# {title}
 
 From the schema of the file; [its page]({page}) has examples, and meanings where none stands here. An *amount* is a
-number in the SI unit shown, or a table with a unit of its own: `{{ value = 22, unit = "deg" }}`. {unit}Where no default is shown
-nothing is assumed, or it follows from what else is given.
+number in the SI unit shown, or a table with a unit of its own: `{{ value = 22, unit = "deg" }}`. {unit}Where no default
+is shown nothing is assumed, or it follows from what else is given.
 
 """
 HEAD = """# Command line

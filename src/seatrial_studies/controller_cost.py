@@ -7,8 +7,6 @@ from typing import Generic, TypeVar
 import numpy as np
 from scipy.optimize import minimize
 
-from seatrial.core.results import Table
-from seatrial.core.text import significant
 from seatrial.core.values import Array
 from seatrial.physics.simulate import trajectories
 from seatrial_studies.heave_pitch_search import candidate_matrices, simulate_search_data
@@ -31,15 +29,6 @@ class ControlledMotion:
 
     output_rms: float
     actuator_rms: float
-
-
-@dataclass(frozen=True)
-class ControlLabels:
-    """Headings of a table of controllers, with units: each gain, rms of the output, rms of the actuator."""
-
-    gains: tuple[str, ...]
-    output: str
-    actuator: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,26 +118,14 @@ def largest_excess(groups: Mapping[int, tuple[ControllerCost, ...]], selected: C
     return max(cost.excess for costs in groups.values() for cost in costs if selected(cost.method))
 
 
-def uncontrolled_excess_text(groups: Mapping[int, tuple[ControllerCost, ...]]) -> str:
-    """Return the least and the largest excess cost without control over the groups, as text in per cent."""
-    excess = [100.0 * c.excess for costs in groups.values() for c in costs if c.method == WITHOUT_CONTROL]
-    return f"{significant(min(excess), 2)} to {significant(max(excess), 2)} %"
+def uncontrolled_excess(groups: Mapping[int, tuple[ControllerCost, ...]]) -> list[float]:
+    """Return the excess cost without control of each group."""
+    return [cost.excess for costs in groups.values() for cost in costs if cost.method == WITHOUT_CONTROL]
 
 
-def controller_cost_table(
-    title: str, groups: Mapping[str, tuple[ControllerCost, ...]], labels: ControlLabels, note: str
-) -> Table:
-    """Return the table that ends the page: a row for each controller of each group, such as a heading."""
-    header = (
-        "",
-        "tuned on",
-        *labels.gains,
-        f"{labels.output}, predicted",
-        labels.output,
-        labels.actuator,
-        "cost over best, %",
-    )
-    rows = tuple(
+def controller_rows(groups: Mapping[str, tuple[ControllerCost, ...]]) -> list[tuple[str | float, ...]]:
+    """Return the rows of the table that ends a page: one for each controller of each group, such as a heading."""
+    return [
         (
             group,
             cost.method,
@@ -160,8 +137,7 @@ def controller_cost_table(
         )
         for group, costs in groups.items()
         for cost in costs
-    )
-    return Table(title, header, rows, note)
+    ]
 
 
 def _finite(value: float) -> float | str:
@@ -178,16 +154,6 @@ FIN_WEIGHT = 0.1
 START_GAINS = np.array([1.0, 1.0])
 # sets the seas apart from those of the searches
 _SEED_KEY = 23
-LABELS = ControlLabels(("KP", "KD, s"), "pitch rms, deg", "fin rms, deg")
-CONTROLLER_COST_TITLE = "What wrong coefficients cost a controller"
-_NOTE = (
-    "A fin (6 m², 25 m aft, assumed as elsewhere) is turned by KP pitch + KD pitch rate. The gains are tuned on the "
-    f"ship that the coefficients describe, in {SEAS} seas of 200 s, for least pitch variance plus {FIN_WEIGHT:g}² fin "
-    "variance. They are then simulated on the true ship in the same seas. A positive fin angle lifts the stern; pitch "
-    "is positive bow up, so that positive gains work against it. Fin angles are not limited. 'Predicted': pitch of the "
-    "ship that the coefficients describe. 'Cost over best': the sum that was to be least, on the true ship, over that "
-    "of the controller tuned on the truth; without control it is the pitch variance alone."
-)
 
 
 def pitch_control_task(heading: int, height: float, seed: int) -> ControlTask[Array]:
@@ -225,9 +191,3 @@ def pitch_controller_costs(
         task = pitch_control_task(heading, height, seed)
         costs[heading] = with_uncontrolled(controller_costs(methods, truths[heading], task), truths[heading], task)
     return costs
-
-
-def pitch_controller_cost_table(costs: Mapping[int, tuple[ControllerCost, ...]]) -> Table:
-    """Return the last table of a page on heave and pitch."""
-    groups = {f"{heading}°": each for heading, each in costs.items()}
-    return controller_cost_table(CONTROLLER_COST_TITLE, groups, LABELS, _NOTE)

@@ -4,6 +4,7 @@ Whole runs are held out, never pieces of them: neighbouring samples share wind a
 (Stone 1974, J. R. Stat. Soc. B 36, 111-147, for runs instead of observations).
 """
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -226,3 +227,10 @@ def cross_validate_unfitted(
     return CrossValidation(
         tuple(window_errors(template, model, runs.records, owns, labels, protocol or HoldoutProtocol()))
     )
+
+
+def jackknife_error(values: Sequence[float]) -> float:
+    """Return the standard error from values with one run left out each (Tukey 1958, Ann. Math. Stat. 29, 614)."""
+    given = np.asarray(values, dtype=float)
+    count = len(given)
+    return math.sqrt((count - 1) / count * float(np.sum((given - given.mean()) ** 2)))

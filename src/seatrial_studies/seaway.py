@@ -23,8 +23,6 @@ SIGNIFICANT_HEIGHT = 2.27
 """Significant height of the sea, m (Qi et al. 2025, section 4)."""
 HEADINGS = tuple(int(name.removeprefix(_SET_PREFIX)) for name in PARAMETER_SETS if name.startswith(_SET_PREFIX))
 """Headings to the waves of tables 2 to 4, degrees; 180 is head sea."""
-B53_NOTE = "b53 is negative; its magnitude is shown, as the paper prints it."
-"""What a table or figure with b53 by magnitude says below it."""
 SHIP = parameter_set(f"{_SET_PREFIX}{HEADINGS[0]}").ship
 
 

@@ -46,12 +46,12 @@ VARIABLES: dict[str, int] = {
     "seatrial/reporting": 57,
     "seatrial/reporting/figures": 10,
     "seatrial_studies": 12,
-    "seatrial_studies/alexandersson2022": 19,
-    "seatrial_studies/meng2014": 19,
-    "seatrial_studies/qi2025": 39,
-    "seatrial_studies/section2d": 35,
-    "seatrial_studies/song2025": 45,
-    "seatrial_studies/yu2014": 55,
+    "seatrial_studies/alexandersson2022": 14,
+    "seatrial_studies/meng2014": 9,
+    "seatrial_studies/qi2025": 15,
+    "seatrial_studies/section2d": 27,
+    "seatrial_studies/song2025": 24,
+    "seatrial_studies/yu2014": 39,
 }
 
 # In figures `left` is a side, next to `right` and `top`.

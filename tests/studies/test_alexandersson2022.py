@@ -13,10 +13,10 @@ import pytest
 from tests.reporting.fabricated import fabricated_fit
 
 from seatrial import api
-from seatrial.core.results import CandidateModel, CheckStatus, Study, Verdict
+from seatrial.core.results import CandidateModel, CheckStatus, Claim, Study, Table, Verdict
 from seatrial.core.values import Finding, InputError, Record, Severity
 from seatrial.data.folder.document import document, strict_json
-from seatrial_studies.alexandersson2022 import verdicts
+from seatrial_studies.alexandersson2022.facts import FACTS
 from seatrial_studies.alexandersson2022.reproduction import (
     MEASURED_TURNS,
     PREDICTED_TURNS,
@@ -26,12 +26,13 @@ from seatrial_studies.alexandersson2022.reproduction import (
     LeftOutRun,
     PredictionCoverage,
     TurnInterval,
-    jackknife_error,
     median_noise,
     percent_deviation,
     published_range,
 )
-from seatrial_studies.alexandersson2022.tables import coverage_tables, left_out_table, left_out_turn_table
+from seatrial_studies.cross_validation import jackknife_error
+from seatrial_studies.study_file import read_study
+from seatrial_studies.study_page import StudyPage
 
 
 @pytest.fixture(scope="module", params=[pytest.param("quick", marks=pytest.mark.long)])
@@ -82,7 +83,7 @@ def test_the_command_writes_report_and_json_and_prints_what_fails(
     capsys: pytest.CaptureFixture,
 ) -> None:
     repetition = made(factor=1.2)
-    bare = Study("bare", "Nobody 2022", (verdicts.turning_claim(repetition),), verdicts.checks(repetition))
+    bare = Study("bare", "Nobody 2022", (claim(repetition, TURNING),), page(repetition).checks())
     installed = SimpleNamespace(name="bare", load=lambda: lambda **_: bare)
     monkeypatch.setattr("seatrial._plugins.entry_points", lambda group: [installed])  # noqa: ARG005
     code = run_command("reproduce", "bare", "--out", tmp_path / "out", "--json", tmp_path / "bare.json")
@@ -137,22 +138,40 @@ def test_full_refits_and_the_family_are_judged_and_shown_where_they_were_made() 
     )
     with_tied = replace(margins(), tied_turn_intervals=wide, family=members)
     assert held(replace(made(), coverage=with_tied))[8:] == [True, True, False, False, True, True]
-    shown, _, family = coverage_tables(with_tied)
-    assert [row[1] for row in shown.rows] == ["one-step jackknife"] * 2 + ["jackknife, tied models"] * 2
-    assert [row[-1] for row in family.rows] == ["the trial's", "tied"]
-    assert len(coverage_tables(margins())) == 2
-    evidence = verdicts.uncertainty_claim(replace(certain(), coverage=with_tied)).evidence
+    shown = tables(replace(made(), coverage=with_tied))
+    how = [row[1] for row in shown["Intervals of the 35 deg turns"].rows]
+    assert how == ["one-step jackknife"] * 2 + ["jackknife, tied models"] * 2
+    assert [row[-1] for row in shown[FAMILY].rows] == ["the trial's", "tied"]
+    assert FAMILY not in tables(made())
+    evidence = claim(replace(certain(), coverage=with_tied), UNCERTAINTY).evidence
     assert evidence.count("hold 2 of 2") == 2 and "tied models" in evidence
 
 
+TURNING, ZIGZAG, FILTERING = "Zigzags alone", "A model of zigzags", "These records must be freed"
+UNCERTAINTY, LABELS = "Realisations drawn", "Columns 5 to 8"
+FAMILY = "The family of models on runs left out"
+
+
+def page(repetition: BenchmarkReproduction) -> StudyPage[BenchmarkReproduction]:
+    return StudyPage(read_study("alexandersson2022"), FACTS, repetition)
+
+
+def claim(repetition: BenchmarkReproduction, start: str) -> Claim:
+    return next(c for c in page(repetition).claims() if c.claim.startswith(start))
+
+
+def tables(repetition: BenchmarkReproduction) -> dict[str, Table]:
+    return {table.title: table for table in page(repetition).tables()}
+
+
 def held(repetition: BenchmarkReproduction) -> list[bool]:
-    return [check.holds for check in verdicts.checks(repetition)]
+    return [check.holds for check in page(repetition).checks()]
 
 
 def test_checks_hold_and_fail() -> None:
     assert held(made()) == [True] * 12
     assert held(made(heading=11.1, position=6.1, warm=5.1))[:3] == [False] * 3
-    withdrawn = [check.name for check in verdicts.checks(made()) if check.status is CheckStatus.WITHDRAWN]
+    withdrawn = [check.name for check in page(made()).checks() if check.status is CheckStatus.WITHDRAWN]
     assert withdrawn == ["fit, warm [s]", "identify as a whole [s]"]
     assert held(made(factor=1.2))[4:8] == [False] * 4
     assert held(made(factor=math.nan, heading=math.nan)) == [False, True, True, True] + [False] * 4 + [True] * 4
@@ -165,10 +184,7 @@ def test_checks_of_intervals_hold_and_fail() -> None:
     assert held(replace(made(), coverage=margins(share=0.7)))[8:] == [True, True, False, False]
     assert margins().turn_intervals[0].half_width == pytest.approx(100 * 0.2 / MEASURED_TURNS["port"].diameter)
     assert TurnInterval("port", "advance", 2.0, 4.0, 3.9).relative_deviation == pytest.approx(0.9)
-    assert (
-        margins().turn_intervals[0].contains_measured
-        and "hold 2 of 2" in verdicts.uncertainty_claim(certain()).evidence
-    )
+    assert margins().turn_intervals[0].contains_measured and "hold 2 of 2" in claim(certain(), UNCERTAINTY).evidence
 
 
 def certain() -> BenchmarkReproduction:
@@ -188,27 +204,24 @@ def certain() -> BenchmarkReproduction:
 )
 def test_verdicts_follow_the_numbers(heading: float, factor: float, turning: Verdict, zigzag: Verdict) -> None:
     repetition = made(heading=heading, factor=factor)
-    assert verdicts.turning_claim(repetition).verdict is turning
-    assert verdicts.zigzag_claim(repetition).verdict is zigzag
+    assert claim(repetition, TURNING).verdict is turning
+    assert claim(repetition, ZIGZAG).verdict is zigzag
 
 
 def test_noise_is_blamed_only_where_there_is_some() -> None:
     quiet = made()
     noisy = replace(quiet, noise_levels={n.channel: n.standard_deviation for n in quiet.fit.channel_noise})
-    assert verdicts.filtering_claim(quiet).verdict is Verdict.REFUTED
-    assert verdicts.filtering_claim(noisy).verdict is Verdict.UNKNOWABLE
-    assert verdicts.filtering_claim(made(heading=20.0)).verdict is Verdict.UNKNOWABLE
+    assert claim(quiet, FILTERING).verdict is Verdict.REFUTED
+    assert claim(noisy, FILTERING).verdict is Verdict.UNKNOWABLE
+    assert claim(made(heading=20.0), FILTERING).verdict is Verdict.UNKNOWABLE
 
 
 def test_labels_are_refuted_only_where_every_run_speaks() -> None:
     finding = [Finding(Severity.ERROR, c, "wrong", "1") for c in ("wrong-frame", "mislabelled")]
     all_of_them = {"a": tuple(finding), "b": tuple(finding)}
-    assert verdicts.column_labels_claim(replace(made(), label_findings=all_of_them)).verdict is Verdict.REFUTED
-    assert (
-        verdicts.column_labels_claim(replace(made(), label_findings=all_of_them | {"c": ()})).verdict
-        is Verdict.UNKNOWABLE
-    )
-    assert verdicts.column_labels_claim(made()).verdict is Verdict.UNKNOWABLE
+    assert claim(replace(made(), label_findings=all_of_them), LABELS).verdict is Verdict.REFUTED
+    assert claim(replace(made(), label_findings=all_of_them | {"c": ()}), LABELS).verdict is Verdict.UNKNOWABLE
+    assert claim(made(), LABELS).verdict is Verdict.UNKNOWABLE
 
 
 @pytest.mark.parametrize(("spread", "verdict"), [(0.001, Verdict.REFUTED), (0.05, Verdict.UNKNOWABLE)])
@@ -221,10 +234,12 @@ def test_certainty_is_judged_by_leaving_runs_out(spread: float, verdict: Verdict
         for k in range(3)
     )  # fmt: skip
     repetition = replace(base, left_out_runs=entries)
-    assert verdicts.uncertainty_claim(repetition).verdict is verdict
-    assert verdicts.uncertainty_claim(base).verdict is Verdict.UNKNOWABLE
-    assert left_out_table(entries).rows[-1] == ("median", 8.0, 4.0, None, 1.5, 0.2)
-    assert left_out_turn_table(entries).rows[-1][1] == pytest.approx(0.0, abs=1e-12)
+    assert claim(repetition, UNCERTAINTY).verdict is verdict
+    assert claim(base, UNCERTAINTY).verdict is Verdict.UNKNOWABLE
+    shown = tables(repetition)
+    assert shown["Leave one run out"].rows[-1] == ("median", 8.0, 4.0, None, 1.5, 0.2)
+    turned = shown["Turning circles with one run left out"].rows[-1]
+    assert turned[1] == pytest.approx(0.0, abs=1e-12)
 
 
 def test_jackknife_of_a_mean_is_its_standard_error(rng: np.random.Generator) -> None:

@@ -9,13 +9,11 @@ from seatrial.core.values import Array
 from seatrial_studies.controller_cost import (
     TRUTH,
     WITHOUT_CONTROL,
-    ControlLabels,
     ControlledMotion,
     ControlTask,
-    controller_cost_table,
     controller_costs,
+    controller_rows,
     pitch_control_task,
-    pitch_controller_cost_table,
     pitch_controller_costs,
     tuned_gains,
 )
@@ -61,8 +59,8 @@ def test_the_cost_of_wrong_coefficients_is_that_of_the_closed_form() -> None:
 
 def test_a_controller_that_runs_away_on_the_truth_is_said_to() -> None:
     costs = controller_costs({"wrong": 5.0}, -0.5, scalar_task())
-    table = controller_cost_table("t", {"g": costs}, ControlLabels(("k",), "x", "u"), "")
-    assert "runs away" in table.rows[1] and table.rows[0][-1] == pytest.approx(0.0, abs=1e-9)
+    best, wrong = controller_rows({"g": costs})
+    assert "runs away" in wrong and best[-1] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_the_fin_damps_pitch_and_wrong_coefficients_cost_more_than_none() -> None:
@@ -74,6 +72,6 @@ def test_the_fin_damps_pitch_and_wrong_coefficients_cost_more_than_none() -> Non
     assert idle.method == WITHOUT_CONTROL and idle.actual == still and idle.excess > other.excess
     assert best.actual.output_rms < 0.9 * still.output_rms
     assert other.excess > 1e-3 and best.excess == pytest.approx(0.0, abs=1e-12)
-    assert [row[:2] for row in pitch_controller_cost_table(costs).rows] == [
+    assert [row[:2] for row in controller_rows({"135°": costs[135]})] == [
         ("135°", TRUTH), ("135°", WITHOUT_CONTROL), ("135°", "pitch damping three times"),
     ]  # fmt: skip

@@ -9,7 +9,6 @@ from seatrial.core.results import CheckStatus, Figure, Study, Verdict
 from seatrial.numerics.optimise import CloudSettings
 from seatrial.physics.models import HEAVE_PITCH_STIFFNESSES
 from seatrial_studies import meng2014
-from seatrial_studies.controller_cost import CONTROLLER_COST_TITLE
 from seatrial_studies.heave_pitch_search import is_smaller, simulate_search_data
 from seatrial_studies.meng2014.reproduction import (
     BEAM_WAVES,
@@ -20,8 +19,8 @@ from seatrial_studies.meng2014.reproduction import (
     twelve_unknowns,
     undetected_change,
 )
-from seatrial_studies.meng2014.tables import DECLARATIONS
-from seatrial_studies.meng2014.verdicts import iterations_verdict
+from seatrial_studies.study_file import read_study
+from seatrial_studies.study_page import judged
 
 
 @pytest.fixture(scope="module", params=[pytest.param("quick", marks=pytest.mark.long)])
@@ -58,8 +57,10 @@ def test_speed_is_judged_by_a_sign_test() -> None:
 
 
 def test_more_iterations_are_judged_with_the_noise_and_without() -> None:
-    assert iterations_verdict(0.9) is Verdict.CONFIRMED
-    assert iterations_verdict(0.99) is Verdict.UNKNOWABLE  # what may be is not refuted
+    declared = read_study("meng2014")
+    (claim,) = [c for c in declared.claims if c.claim.startswith("More iterations")]
+    verdicts = [judged(claim.rule, {**declared.limits, "noisy_ratio": ratio}).verdict for ratio in (0.9, 0.99)]
+    assert verdicts == [Verdict.CONFIRMED, Verdict.UNKNOWABLE]  # what may be is not refuted
 
 
 def test_wrong_coefficients_follow_the_record_within_the_noise() -> None:
@@ -89,8 +90,8 @@ def test_the_page_answers_its_question(study: Study) -> None:
 
 def test_every_figure_of_the_paper_has_its_counterpart(study: Study) -> None:
     titles = [t.title for t in study.tables] + [f.title for f in study.figures]
-    assert DECLARATIONS.missing_counterparts(titles) == ()
-    assert [f.figure for f in DECLARATIONS.figures] == ["Figure 1", "Figure 2", "Figure 3"]
+    assert read_study("meng2014").missing_counterparts(titles) == ()
+    assert [figure for figure, *_ in read_study("meng2014").paper_figures] == ["Figure 1", "Figure 2", "Figure 3"]
     (convergence,) = [f for f in study.figures if isinstance(f, Figure) and f.title == "Convergence"]
     assert [c.name for c in convergence.curves][:2] == ["ICPSO", "PSO"]
     assert all(np.all(np.isfinite(c.y)) for c in convergence.curves)
@@ -110,7 +111,7 @@ def test_claims_are_judged_in_the_papers_own_setting_too(study: Study) -> None:
 
 def test_what_wrong_coefficients_cost_ends_the_page(study: Study) -> None:
     costs = study.tables[-1]
-    assert costs.title == CONTROLLER_COST_TITLE and len(costs.rows) == 30
+    assert costs.title == "What wrong coefficients cost a controller" and len(costs.rows) == 30
     assert all(float(row[-1] or 0.0) > -1e-6 for row in costs.rows)
 
 

@@ -10,7 +10,7 @@ from seatrial.numerics.optimise import HerdSettings, WildHorse, search
 from seatrial.physics.models.published import QI2025_HEADINGS
 from seatrial.problems import centred_box, off_centre_box
 from seatrial_studies import qi2025
-from seatrial_studies.controller_cost import CONTROLLER_COST_TITLE, TRUTH
+from seatrial_studies.controller_cost import TRUTH
 from seatrial_studies.heave_pitch_search import one_sample_objective, repeat_searches, simulate_search_data
 from seatrial_studies.qi2025.evidence import Tracking, relative_error, tracked_states
 from seatrial_studies.qi2025.published import SearchAlgorithm, audit, misprinted_errors, recomputed_error
@@ -22,9 +22,8 @@ from seatrial_studies.qi2025.reproduction import (
     TenRuns,
     model_state_objective,
 )
-from seatrial_studies.qi2025.search_claims import INFERENCE, judged_in_settings
-from seatrial_studies.qi2025.tables import DECLARATIONS
-from seatrial_studies.seaway import B53_NOTE
+from seatrial_studies.study_file import read_study
+from seatrial_studies.study_page import judged
 
 
 @pytest.fixture(scope="module", params=[pytest.param("quick", marks=pytest.mark.long)])
@@ -107,14 +106,15 @@ def test_the_papers_contrast_appears_only_in_its_own_setting(study: Study) -> No
     ],
 )
 def test_a_verdict_follows_from_both_settings(own: bool, elsewhere: bool, verdict: Verdict) -> None:
-    assert judged_in_settings("c", "e", holds_in_own=own, holds_elsewhere=elsewhere).verdict is verdict
+    (claim,) = [c for c in read_study("qi2025").claims if "more stably" in c.claim]
+    assert judged(claim.rule, {"is_steadiest": {"PAPER": own, "WHOLE_OFF_CENTRE": elsewhere}}).verdict is verdict
 
 
 def test_the_page_answers_its_question_and_expands_its_abbreviations(study: Study) -> None:
     text = " ".join(study.answer)
     names = ("improved wild horse optimiser (IWHO)", "wild horse optimiser (WHO)", "particle swarm optimisation (PSO)")
-    assert study.answer[0].startswith("This is the quick version: at each heading 10 runs in the chosen setting and 5 ")
-    for words in (*names, "no single setting", "costs at most 0.8 %", "without control the cost is"):
+    assert "At each heading there are 10 runs in the chosen setting (10), 5 elsewhere" in study.answer[0]
+    for words in (*names, "no single setting", "costs at most 0.8 %", "Without control the cost is"):
         assert words in text
     assert not re.search(r"\de[+-]\d", text + " ".join(c.evidence for c in study.claims))
 
@@ -148,7 +148,7 @@ def test_each_addition_of_iwho_is_judged_and_mating_puts_values_in_the_middle(st
 def test_b53_is_said_to_be_shown_by_magnitude(study: Study) -> None:
     notes = {x.title: x.note for x in (*study.tables, *study.figures) if not isinstance(x, Matrix)}
     for title in (*(f"Coefficients at {h}°" for h in QI2025_HEADINGS), "Figure 11: a53 and b53"):
-        assert B53_NOTE in notes[title]
+        assert "b53 is negative; its magnitude is shown" in notes[title]
 
 
 def test_particle_swarms_judge_more_candidates_than_herds(study: Study) -> None:
@@ -183,7 +183,7 @@ def test_a_model_with_the_true_coefficients_tracks_exactly() -> None:
 
 def test_what_wrong_coefficients_cost_ends_the_page(study: Study) -> None:
     costs = study.tables[-1]
-    assert costs.title == CONTROLLER_COST_TITLE
+    assert costs.title == read_study("qi2025").tables[-1].title
     by_method = {(row[0], row[1]): float(row[-1] or 0.0) for row in costs.rows}
     for heading in QI2025_HEADINGS:
         assert by_method[f"{heading}°", TRUTH] == pytest.approx(0.0, abs=1e-9)
@@ -241,8 +241,8 @@ def test_what_the_page_must_declare_is_there(study: Study) -> None:
         r[0] for r in tables["Deviations from the print"].rows
     }
     titles = [t.title for t in study.tables] + [f.title for f in study.figures]
-    assert DECLARATIONS.missing_counterparts(titles) == ()
-    assert [f.figure for f in DECLARATIONS.figures] == [f"Figure {k}" for k in range(1, 12)]
+    assert read_study("qi2025").missing_counterparts(titles) == ()
+    assert [figure for figure, *_ in read_study("qi2025").paper_figures] == [f"Figure {k}" for k in range(1, 12)]
 
 
 def test_every_table_and_figure_of_the_paper_is_there(study: Study) -> None:
@@ -276,7 +276,7 @@ def test_waves_beyond_the_sampling_are_said_to_be_aliased(study: Study) -> None:
 
 def test_every_claim_says_where_it_stands_and_what_is_inferred_is_marked(study: Study) -> None:
     assert all(re.search(r"\((abstract|section|sections|table|tables|figures)\b", c.claim) for c in study.claims)
-    inferred = [c.claim for c in study.claims if c.claim.startswith(INFERENCE)]
+    inferred = [c.claim for c in study.claims if c.claim.startswith(read_study("qi2025").phrases["inference"])]
     assert len(inferred) == 3 and any("did not know the truth" in c for c in inferred)
 
 

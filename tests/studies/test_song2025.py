@@ -11,10 +11,11 @@ from seatrial.core.results import Bars, Matrix, Study, Verdict
 from seatrial.data.folder.document import document, strict_json
 from seatrial.physics.models import waterjet, with_candidate_terms
 from seatrial_studies.song2025 import study
-from seatrial_studies.song2025.published import DROPPED_COEFFICIENTS, STATEMENTS
+from seatrial_studies.song2025.facts import FACTS
+from seatrial_studies.song2025.published import DROPPED_COEFFICIENTS
 from seatrial_studies.song2025.reproduction import EstimatorResult
-from seatrial_studies.song2025.tables import DECLARATIONS
-from seatrial_studies.song2025.verdicts import checks
+from seatrial_studies.study_file import read_study
+from seatrial_studies.study_page import StudyPage
 
 
 @pytest.fixture(scope="module", params=[pytest.param("quick", marks=pytest.mark.long)])
@@ -31,19 +32,16 @@ def test_checks_hold_in_another_series_of_noise(quick: Study) -> None:
 
 def test_every_statement_is_judged(quick: Study) -> None:
     """Nine statements; what holds without noise holds in its own setting, of robustness the print says too little."""
-    assert len(quick.claims) == len(STATEMENTS)
-    verdicts = {c.claim.split(" (")[0]: c.verdict for c in quick.claims}
-    assert verdicts[STATEMENTS["robust"].text] is Verdict.UNKNOWABLE
-    assert verdicts[STATEMENTS["accurate"].text] is Verdict.HOLDS_IN_OWN_SETTING
-    assert verdicts[STATEMENTS["predicts"].text] is Verdict.HOLDS_IN_OWN_SETTING
-    (robust,) = [c for c in quick.claims if c.claim.startswith(STATEMENTS["robust"].text)]
-    assert "0.02 m/s in u and v and 0.1°/s in r" in robust.evidence
-    (accurate,) = [c for c in quick.claims if c.claim.startswith(STATEMENTS["accurate"].text)]
+    assert len(quick.claims) == 9
+    claims = {c.claim.split(" (")[0]: c for c in quick.claims}
+    assert claims["the model is robust"].verdict is Verdict.UNKNOWABLE
+    assert "0.02 m/s in u and v and 0.1°/s in r" in claims["the model is robust"].evidence
+    own = {claim.split(" ")[0] for claim, c in claims.items() if c.verdict is Verdict.HOLDS_IN_OWN_SETTING}
+    assert own == {"SVR", "the", "predicted"}
+    (accurate,) = [c for claim, c in claims.items() if claim.startswith("SVR identifies")]
     assert "in the median and 79.9 % at worst" in accurate.evidence and "nearest to the print" in accurate.evidence
     assert len(quick.answer) == 3 and "The paper tests no noise" in quick.answer[2]
-    assert verdicts[STATEMENTS["improved"].text] is Verdict.HOLDS_IN_OWN_SETTING
-    assert verdicts[STATEMENTS["wider"].text] is Verdict.HOLDS_IN_OWN_SETTING
-    assert verdicts[STATEMENTS["cleaning"].text] is Verdict.CONFIRMED
+    assert claims["thorough cleaning removes bad data and raises the accuracy"].verdict is Verdict.CONFIRMED
 
 
 def test_every_table_and_figure_of_the_paper_has_its_place(quick: Study) -> None:
@@ -56,7 +54,7 @@ def test_every_table_and_figure_of_the_paper_has_its_place(quick: Study) -> None
     assert sum(isinstance(f, Matrix) for f in quick.figures) == 3
     assert sum(isinstance(f, Bars) for f in quick.figures) == 5
     every = [t.title for t in quick.tables] + [f.title for f in quick.figures]
-    assert DECLARATIONS.missing_counterparts(every) == ()
+    assert read_study("song2025").missing_counterparts(every) == ()
     assert every.index("What wrong coefficients cost a controller") == len(quick.tables) - 1
 
 
@@ -104,8 +102,12 @@ def evidence(error: float, ratio: float = 1.0, gain: float = 8.0, confirms: bool
     )
 
 
+def checks(numbers: Any) -> list[bool]:
+    return [check.holds for check in StudyPage(read_study("song2025"), FACTS, numbers).checks()]
+
+
 def test_checks_hold_for_good_numbers_and_fail_for_bad_ones() -> None:
     """Each by its own number."""
-    assert all(c.holds for c in checks(evidence(1e-9)))
-    assert [c.holds for c in checks(evidence(0.5))] == [False, False, True, False, True, False, True]
-    assert [c.holds for c in checks(evidence(1e-9, 2.0, 3.0, False))] == [True, True, False, True, False, True, False]
+    assert all(checks(evidence(1e-9)))
+    assert checks(evidence(0.5)) == [False, False, True, False, True, False, True]
+    assert checks(evidence(1e-9, 2.0, 3.0, False)) == [True, True, False, True, False, True, False]

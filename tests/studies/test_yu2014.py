@@ -11,12 +11,13 @@ from seatrial.physics.loops.loop_states import state_space
 from seatrial.physics.loops.structures import Preamplifier
 from seatrial.physics.sea.spectrum import ittc
 from seatrial_studies import yu2014
+from seatrial_studies.study_file import read_study
 from seatrial_studies.yu2014.audit import audit
 from seatrial_studies.yu2014.published import (
     DESIGN_ROW,
     DESIGN_SEA,
-    HEIGHT,
     HULL_FACTOR,
+    PUBLISHED,
     PUBLISHED_VALUES,
     TABLE_1,
     TARGET,
@@ -41,7 +42,6 @@ from seatrial_studies.yu2014.searches import (
     minimise_roll,
     search_over_seeds,
 )
-from seatrial_studies.yu2014.tables import DECLARATIONS
 
 PRINTED, WASHOUT = Preamplifier.PRINTED, Preamplifier.WASHOUT
 
@@ -145,7 +145,7 @@ def test_one_record_varies_as_a_gaussian_process_does() -> None:
     w = 2.0 * np.pi * np.fft.rfftfreq(n, dt)
     w[0] = 1e-6
     loop = performance(WASHOUT).loop
-    slope = (w**2 / G) ** 2 * HULL_FACTOR.slope_factor(w, math.pi / 2) ** 2 * ittc(HEIGHT).density(w)
+    slope = (w**2 / G) ** 2 * HULL_FACTOR.slope_factor(w, math.pi / 2) ** 2 * ittc(PUBLISHED.height).density(w)
     size = np.abs(loop.disturbance.frequency_response(w) / (1.0 + loop.open_loop(w))) * np.sqrt(slope)
     rms = []
     for _ in range(25):
@@ -205,7 +205,7 @@ def test_fitted_is_called_fitted_and_levels_are_said_not_to_match(study: Study) 
     assert "levels do not match" in next(t for t in study.tables if "one number of it" in t.title).note
     assert any("Kq" in str(row[0]) for t in study.tables if t.title == "Assumed" for row in t.rows)
     titles += [f.title for f in study.figures]
-    assert DECLARATIONS.missing_counterparts(titles) == ()
+    assert read_study("yu2014").missing_counterparts(titles) == ()
 
 
 def test_figures_3_to_7_are_there(study: Study) -> None:
@@ -244,7 +244,7 @@ def test_claims_are_judged_in_the_context_they_were_made_in(study: Study) -> Non
 
 def test_random_and_fixed_weights_are_compared_from_the_same_first_generations() -> None:
     compared = compare_weights(WASHOUT, 0)
-    assert compared.J.shape == compared.volume.shape == (2, SEEDS)
+    assert compared.J.shape == compared.volume.shape == (2, SEEDS.value)
     assert np.all(compared.J[0] != compared.J[1]) and np.all((compared.volume > 0.0) & (compared.volume < 1.0))
     assert not (compared.is_better and compared.is_worse)
 

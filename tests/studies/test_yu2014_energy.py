@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from seatrial.physics.loops import Preamplifier, reversals_per_hour
+from seatrial_studies.study_file import read_study
 from seatrial_studies.yu2014.published import (
-    INERTIA,
+    PUBLISHED,
     PUBLISHED_VALUES,
     TABLE_1,
     TARGET,
@@ -28,7 +29,6 @@ from seatrial_studies.yu2014.reproduction import (
     work,
 )
 from seatrial_studies.yu2014.searches import joint_optimum, wave_slope_record
-from seatrial_studies.yu2014.tables import DECLARATIONS
 
 WASHOUT = Preamplifier.WASHOUT
 
@@ -39,7 +39,7 @@ def energy():
 
 
 def test_work_is_that_of_eq_3() -> None:
-    assert work(5.07) == pytest.approx(INERTIA * (5.07 * math.pi / 180.0) ** 2 / EFFICIENCY)
+    assert work(5.07) == pytest.approx(PUBLISHED.inertia * (5.07 * math.pi / 180.0) ** 2 / EFFICIENCY)
     of = performance(WASHOUT)
     assert fin_energy(of, PUBLISHED_VALUES, 18.0).work == pytest.approx(work(roll_response(of).rate), rel=1e-9)
 
@@ -103,5 +103,6 @@ def test_the_record_of_the_search_has_the_variance_of_its_spectrum() -> None:
 
 
 def test_every_figure_has_a_counterpart_and_every_symbol_a_meaning() -> None:
-    assert len(DECLARATIONS.figures) == 7
-    assert all(symbol.meaning and symbol.value for symbol in DECLARATIONS.symbols)
+    declared = read_study("yu2014")
+    assert len(declared.paper_figures) == 7
+    assert all(meaning and value for _, meaning, _, value in declared.symbols)

@@ -5,11 +5,10 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from seatrial.core.results import Study
-from seatrial.core.values import versions
-from seatrial_studies.alexandersson2022.reproduction import SOURCE, reproduce_benchmark
-from seatrial_studies.alexandersson2022.tables import figures, tables, validation_prediction
-from seatrial_studies.alexandersson2022.verdicts import checks, claims
+from seatrial_studies.alexandersson2022.facts import FACTS
+from seatrial_studies.alexandersson2022.reproduction import reproduce_benchmark
 from seatrial_studies.packaged_trials import packaged_trial
+from seatrial_studies.study_page import study_from
 
 
 def study(*, quick: bool, seed: int, report_progress: Callable[[str], None] | None) -> Study:
@@ -27,18 +26,7 @@ def study(*, quick: bool, seed: int, report_progress: Callable[[str], None] | No
     # as in the paper, whose towing tank records the rudder on the clock of the motions
     trial = replace(trial, estimate=trial.estimate.with_known_timing(trial.model.input_names))
     made = reproduce_benchmark(trial, quick=quick, seed=seed, report_progress=report_progress)
-    return Study(
-        name="alexandersson2022",
-        source=SOURCE,
-        title="KVLCC2 from zigzags: a published benchmark repeated",
-        question=trial.question,
-        claims=claims(made),
-        checks=checks(made),
-        tables=tables(made),
-        figures=figures(made),
-        predictions=(validation_prediction(made), *(e.prediction for e in made.left_out_runs)),
-        findings=made.fit.findings,
-        seed=seed,
-        elapsed_s=time.perf_counter() - began,
-        versions=versions(),
+    predictions = (made.fit.validation[0], *(run.prediction for run in made.left_out_runs))
+    return study_from(
+        "alexandersson2022", FACTS, made, seed=seed, began=began, predictions=predictions, findings=made.fit.findings
     )

@@ -38,15 +38,10 @@ from seatrial.estimation.predict import (
 from seatrial.physics.manoeuvres import measures, programme
 from seatrial.physics.simulate import SOLAS_SLEW_RATE, manoeuvre
 from seatrial_studies.cross_validation import cross_validate, fit_folds
+from seatrial_studies.study_file import Declared, read_study
 
 # What is published: the paper's numbers, what its code gives when run again, and the measured turning circles.
 
-SOURCE = (
-    "Alexandersson, Mao & Ringsberg 2022, System identification of vessel manoeuvring models, "
-    "Ocean Engineering 266, 112940, doi 10.1016/j.oceaneng.2022.112940"
-)
-# m, length of the KVLCC2 model
-LENGTH = 7.0
 SIDES = ("port", "starboard")
 
 
@@ -60,28 +55,29 @@ class Turn:
     source: str
 
 
-# table tab_kvlcc2_advance in docs/paper/06.20_results_kvlcc2.ipynb of the authors' repository
-# martinlarsalbert/System-identification-of-Vessel-Manoeuvring-Models
-_TABLE = "MARIN, free-running test for SIMMAN 2008, in the paper's table"
-# metres at the model's length of 7 m; rudder +35 deg of the table is to port, -35 deg to starboard
-MEASURED_TURNS = {
-    "port": Turn("port", 21.59 / LENGTH, 21.72 / LENGTH, _TABLE),
-    "starboard": Turn("starboard", 22.54 / LENGTH, 23.55 / LENGTH, _TABLE),
-}
-# metres at full scale, length 320 m; quoted by others, the side is not stated
-OTHER_TURNS = (Turn("", 982.0 / 320.0, 1049.0 / 320.0, "Quadvlieg & Brouwer 2011, MARIN, at second hand"),)
-PREDICTED_TURNS = {
-    "port": Turn("port", 21.21 / LENGTH, 23.07 / LENGTH, "the paper's prediction"),
-    "starboard": Turn("starboard", 22.10 / LENGTH, 24.29 / LENGTH, "the paper's prediction"),
-}
-# in per cent: the published code (vessel-manoeuvring-models 0.0.6) run again on the same records
-RERUN_ADVANCE = {"port": -0.9, "starboard": -1.6}
-RERUN_DIAMETER = {"port": 6.1, "starboard": 3.0}
-# the same: lower and upper value over its variants, open loop from rudder and propeller rate
-RERUN_HEADING = (11.2, 11.7)
-RERUN_POSITION = (10.0, 10.4)
-# s of computing time, the same code
-RERUN_SECONDS = 184.0
+class PrintedTurn(Declared):
+    """Advance and tactical diameter as they are printed, m, for a ship of this length, m."""
+
+    side: str
+    advance: float
+    diameter: float
+    length: float
+    source: str
+
+    @property
+    def turn(self) -> Turn:
+        """Return the turn in ship lengths."""
+        return Turn(self.side, self.advance / self.length, self.diameter / self.length, self.source)
+
+
+def _printed_turns(name: str) -> tuple[Turn, ...]:
+    printed = read_study("alexandersson2022").published[name]
+    return tuple(PrintedTurn.model_validate(turn).turn for turn in printed)
+
+
+MEASURED_TURNS = {turn.side: turn for turn in _printed_turns("measured")}
+PREDICTED_TURNS = {turn.side: turn for turn in _printed_turns("predicted")}
+OTHER_TURNS = _printed_turns("other")
 
 
 def percent_deviation(value: float, reference: float) -> float:
@@ -250,18 +246,8 @@ def leave_one_out(
     return tuple(made)
 
 
-def jackknife_error(values: Sequence[float]) -> float:
-    """Return the standard error from values with one run left out each (Tukey 1958, Ann. Math. Stat. 29, 614)."""
-    given = np.asarray(values, dtype=float)
-    count = len(given)
-    return math.sqrt((count - 1) / count * float(np.sum((given - given.mean()) ** 2)))
-
-
 # What the intervals are worth: the turns' beside MARIN's circles, the bands of 30 s windows beside the records.
 
-# limits of our checks: half width [%], shares of samples inside 95 % bands, least share of headings of Z_35_05
-HALF_WIDTH_LIMIT, SHARE_LIMITS, HELD_OUT_SHARE = 10.0, (0.88, 0.99), 0.80
-_LIMITED_MEASURES = ("tactical diameter",)
 _MEASURES = {"advance_L": ("advance", "advance"), "tactical_diameter_L": ("tactical diameter", "diameter")}
 
 

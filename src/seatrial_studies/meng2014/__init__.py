@@ -3,11 +3,11 @@
 import time
 
 from seatrial.core.results import Study
-from seatrial.core.values import ProgressReporter, versions
+from seatrial.core.values import ProgressReporter
 from seatrial_studies.heave_pitch_search import output_error_results
+from seatrial_studies.meng2014.facts import FACTS
 from seatrial_studies.meng2014.reproduction import (
     HEADINGS,
-    SOURCE,
     CloudSwarmEvidence,
     cloud_weight,
     controllers,
@@ -16,10 +16,7 @@ from seatrial_studies.meng2014.reproduction import (
     twelve_unknowns,
     undetected_change,
 )
-from seatrial_studies.meng2014.tables import figures, tables
-from seatrial_studies.meng2014.verdicts import answer, checks, claims
-
-QUESTION = "Does a cloud particle swarm identify heave and pitch coefficients from motions in waves with a moving fin?"
+from seatrial_studies.study_page import study_from
 
 
 def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -> Study:
@@ -40,17 +37,4 @@ def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -
     report("controllers tuned on each method's coefficients")
     costs = controllers(reproduction, fits, seed)
     evidence = CloudSwarmEvidence(reproduction, fits, unknowns, change, weight, costs)
-    return Study(
-        name="meng2014",
-        source=SOURCE,
-        title="A cloud particle swarm and heave-pitch coefficients: a published search repeated",
-        question=QUESTION,
-        answer=answer(evidence),
-        claims=claims(evidence),
-        checks=checks(evidence),
-        tables=tables(evidence),
-        figures=figures(evidence),
-        seed=seed,
-        elapsed_s=time.perf_counter() - began,
-        versions=versions(),
-    )
+    return study_from("meng2014", FACTS, evidence, seed=seed, began=began)

@@ -1,6 +1,6 @@
 """The paper's searches made again, and what they and the records show of the coefficients."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum, StrEnum
 from functools import partial
@@ -40,24 +40,18 @@ from seatrial_studies.heave_pitch_search import (
     with_physics_start,
 )
 from seatrial_studies.seaway import HEAVE_NOISE, PITCH_NOISE
+from seatrial_studies.study_file import read_study, study_setting
 
 # The paper's searches made again, beside plain particle swarms, in boxes about the truth and beside it.
 
-SOURCE = (
-    "Meng Fei, Xu Hongyang, Xie Zhibin: Parameter identification of ship longitudinal motions based on cloud particle "
-    "swarm optimization algorithm (in Chinese), Ship Science and Technology 2014(7), 37-40, "
-    "doi 10.3404/j.issn.1672-7649.2014.07.0083"
-)
+SOURCE = read_study("meng2014").source
 SwarmFactory = Callable[[Box, np.random.Generator], Population]
 # deg, headings of the paper's tables
 HEADINGS = (0, 45, 90, 135, 180)
-# m, significant height assumed for sea state 3
-SEA_STATE_3 = 0.88
+SEA_STATE_3 = study_setting("meng2014", "sea_state_3", float).value
 NOISE = (HEAVE_NOISE, PITCH_NOISE)
-# iterations and runs of each search; our choice
-ITERATIONS, QUICK_ITERATIONS, RUNS, QUICK_RUNS = 1000, 400, 5, 3
-# shares of the iterations that the shorter searches have; our choice
-SHORTER_SHARES = (0.2, 0.5)
+ITERATIONS, RUNS = study_setting("meng2014", "iterations", int), study_setting("meng2014", "runs", int)
+SHORTER_SHARES = study_setting("meng2014", "shorter_shares", list).value
 
 
 class SwarmAlgorithm(StrEnum):
@@ -114,6 +108,10 @@ class CloudSwarmReproduction:
         """Return the runs at each heading."""
         return len(next(iter(self.seas.values())))
 
+    def of_variant(self, variant: CloudVariant) -> dict[int, RepeatedSearches]:
+        """Return the searches of a variant of ICPSO by heading."""
+        return {heading: self.variants[variant, heading] for heading in HEADINGS}
+
     def excess_fitness(self, heading: int, searches: RepeatedSearches) -> Array:
         """Fitness off centre after each iteration over the better end of both swarms, less 1; (runs, iterations)."""
         ends = [self.searches[BoxPlacement.OFF_CENTRE, heading, a].histories[:, -1] for a in SwarmAlgorithm]
@@ -122,7 +120,7 @@ class CloudSwarmReproduction:
 
 def reproduce_searches(*, quick: bool, seed: int, report_progress: ProgressReporter) -> CloudSwarmReproduction:
     """Five runs of 1000 iterations; `quick`: three of 400."""
-    runs, iterations = (QUICK_RUNS, QUICK_ITERATIONS) if quick else (RUNS, ITERATIONS)
+    runs, iterations = RUNS.in_version(quick=quick), ITERATIONS.in_version(quick=quick)
     report_progress("seas")
     seas = {heading: [_sea(heading, run, seed, NOISE) for run in range(runs)] for heading in HEADINGS}
     searches = {}
@@ -263,8 +261,7 @@ def _fitness_ratios(data: SearchData, box: Box, settings: CloudSettings, seed: l
 
 # Everything the verdicts rest on, and the few numbers they share.
 
-# relative difference of coefficients up to which two swarms have found the same minimum; our choice
-SAME_POINT = 1e-3
+SAME_POINT = study_setting("meng2014", "same_point", float).value
 
 
 @dataclass(frozen=True, eq=False)
@@ -320,12 +317,12 @@ class CloudSwarmEvidence:
         """
         return 0.5 / self.reproduction.seas[HEADINGS[0]][0].measured.size
 
-    def is_stuck(self, searches: dict[int, RepeatedSearches]) -> NDArray[np.bool_]:
+    def is_stuck(self, searches: Mapping[int, RepeatedSearches]) -> NDArray[np.bool_]:
         """Runs off centre that end above the better fitness of both swarms by more than noise, (headings, runs)."""
         ends = [self.reproduction.excess_fitness(h, found)[:, -1] for h, found in searches.items()]
         return np.array(ends) > self.noise_allowance
 
-    def iterations_needed(self, searches: dict[int, RepeatedSearches]) -> Array:
+    def iterations_needed(self, searches: Mapping[int, RepeatedSearches]) -> Array:
         """Return the iteration at which runs reach that fitness within noise, (headings, runs); infinite if never."""
         excess = np.array([self.reproduction.excess_fitness(h, found) for h, found in searches.items()])
         reached = excess <= self.noise_allowance
@@ -366,11 +363,6 @@ class CloudSwarmEvidence:
         swarm = self.off_centre(SwarmAlgorithm.ICPSO)
         simulated = {h: self.output_error[h].evaluations * (1 + len(COEFFICIENTS)) for h in HEADINGS}
         return min(float(swarm[h].evaluations[0]) / simulated[h] for h in HEADINGS)
-
-
-def error_text(searches: dict[int, RepeatedSearches]) -> str:
-    """Mean errors at all headings."""
-    return "/".join(f"{100.0 * float(np.mean(f.mean_error)):.1f}" for f in searches.values()) + " %"
 
 
 # What the record says of the unknowns: twelve of the print, and changes of the eight that it does not see.

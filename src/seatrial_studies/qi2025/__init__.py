@@ -3,23 +3,19 @@
 import time
 
 from seatrial.core.results import Study
-from seatrial.core.values import ProgressReporter, versions
+from seatrial.core.values import ProgressReporter
 from seatrial_studies.heave_pitch_search import output_error_results
 from seatrial_studies.qi2025.evidence import WildHorseEvidence, centre_bias, controllers, hold_bias, track
-from seatrial_studies.qi2025.published import SOURCE, audit
+from seatrial_studies.qi2025.facts import FACTS
+from seatrial_studies.qi2025.published import audit
 from seatrial_studies.qi2025.reproduction import (
-    ABLATION_RUNS,
     FIGURE_HEADING,
-    QUICK_ABLATION_RUNS,
+    PART_RUNS,
     ablation,
     reproduce_searches,
 )
-from seatrial_studies.qi2025.search_claims import answer
-from seatrial_studies.qi2025.tables import figures, tables
-from seatrial_studies.qi2025.verdicts import checks, claims
 from seatrial_studies.seaway import HEADINGS
-
-QUESTION = "Do wild horses identify heave and pitch coefficients from motions in waves, and how well need it be done?"
+from seatrial_studies.study_page import study_from
 
 
 def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -> Study:
@@ -33,7 +29,7 @@ def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -
     report = report_progress or (lambda _: None)
     reproduction = reproduce_searches(quick=quick, seed=seed, report_progress=report)
     report("IWHO with parts left out")
-    ablated = ablation(reproduction, seed, QUICK_ABLATION_RUNS if quick else ABLATION_RUNS)
+    ablated = ablation(reproduction, seed, PART_RUNS.in_version(quick=quick))
     report("audit and our own fits")
     fits = {h: output_error_results(reproduction.seas[h], seed) for h in HEADINGS}
     audited, held, centred = (
@@ -44,17 +40,4 @@ def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -
         reproduction, audited, fits, held, centred, track(reproduction, seed), ablated,
         controllers(reproduction, fits, seed),
     )  # fmt: skip
-    return Study(
-        name="qi2025",
-        source=SOURCE,
-        title="Wild horses and heave-pitch coefficients: a published search repeated",
-        question=QUESTION,
-        answer=answer(evidence),
-        claims=claims(evidence),
-        checks=checks(evidence),
-        tables=tables(evidence),
-        figures=figures(reproduction, evidence.tracking),
-        seed=seed,
-        elapsed_s=time.perf_counter() - began,
-        versions=versions(),
-    )
+    return study_from("qi2025", FACTS, evidence, seed=seed, began=began)

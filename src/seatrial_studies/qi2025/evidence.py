@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from seatrial.core.text import significant
 from seatrial.core.values import Array
 from seatrial.estimation.problem import OutputError, cut_segments
 from seatrial.numerics.optimise import Box, FitnessMemory, levenberg_marquardt, search
@@ -25,6 +24,7 @@ from seatrial_studies.heave_pitch_search import (
     with_physics_start,
 )
 from seatrial_studies.qi2025.published import (
+    SATURATED_RANGE,
     SearchAlgorithm,
     WildHorseAudit,
     printed_error,
@@ -40,12 +40,12 @@ from seatrial_studies.qi2025.reproduction import (
     optimisers,
 )
 from seatrial_studies.seaway import HEADINGS, SIGNIFICANT_HEIGHT, SeawayScenario, ship, simulate_seaway_run
+from seatrial_studies.study_file import study_setting
 
 # What a search owes to the middle of its box: unknowns written as shares of their range, zero at the truth or not.
 
-CENTRE_RUNS = 3
-# the truth a quarter of the box's width from its middle
-OFF_CENTRE_SHIFT = 0.5
+CENTRE_RUNS = study_setting("qi2025", "centre_runs", int).value
+OFF_CENTRE_SHIFT = study_setting("qi2025", "off_centre_shift", float).value
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,8 +123,7 @@ def hold_bias(seed: int) -> dict[int, HoldBias]:
 
 # Figures 6 and 7: models that are carried on while their coefficients are identified, and one left at a guess.
 
-# guesses drawn from the box of the search; our choice
-GUESSES = 20
+GUESSES = study_setting("qi2025", "guesses", int).value
 _MOTIONS = [0, 2]
 
 
@@ -227,8 +226,6 @@ def controllers(
 
 # a value counts as on its bound where it is off by no more than this share of it
 ON_BOUND_SHARE = 0.005
-# of the printed means at the lower bound, the least far out (per cent)
-SATURATED_FROM_PERCENT = -9.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -270,9 +267,7 @@ class WildHorseEvidence:
     def saturated_means(self, setting: SearchSetting) -> int:
         """Of WHO's 16 means at 90 and 135 degrees, those as near the lower bound as the printed ones."""
         found = [self.reproduction.searches[setting, h, SearchAlgorithm.WHO] for h in (90, 135)]
-        return sum(
-            int(np.sum(100.0 * (f.points.mean(axis=0) / f.truth - 1.0) <= SATURATED_FROM_PERCENT)) for f in found
-        )
+        return sum(int(np.sum(100.0 * (f.points.mean(axis=0) / f.truth - 1.0) <= SATURATED_RANGE[1])) for f in found)
 
     def evaluations(self, algorithm: SearchAlgorithm) -> int:
         """Return the candidates that a run judges in the paper's setting."""
@@ -315,13 +310,3 @@ def simulated_steps(evaluations: int, *, has_slopes: bool) -> int:
 def count_below_printed(errors: Array, heading: int) -> int:
     """Of the eight relative errors (8,), those below IWHO's printed one."""
     return int(np.sum(100.0 * np.abs(errors) < printed_error(heading, SearchAlgorithm.IWHO)))
-
-
-def percent_text(values: list[float]) -> str:
-    """Numbers at the three headings."""
-    return "/".join(f"{v:.2f}" for v in values) + " %"
-
-
-def range_text(values: list[float]) -> str:
-    """Return the least and the largest number, two digits each."""
-    return f"{significant(min(values), 2)} to {significant(max(values), 2)} %"

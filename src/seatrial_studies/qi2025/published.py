@@ -9,17 +9,15 @@ import numpy as np
 from seatrial.core.values import Array
 from seatrial.physics.hydro import G, encounter_frequency
 from seatrial.physics.models import HEAVE_PITCH_COEFFICIENTS as COEFFICIENTS
-from seatrial.physics.sea import ittc, motion_statistics, realise
-from seatrial.physics.simulate import frequency_response, linear_system, trajectories
-from seatrial_studies.heave_pitch_search import SearchData, candidate_matrices, held_force_ship, simulate_search_data
-from seatrial_studies.seaway import HEADINGS, SIGNIFICANT_HEIGHT, SPEED, box_hull, theoretical_coefficients
+from seatrial.physics.sea import ittc, realise
+from seatrial.physics.simulate import trajectories
+from seatrial_studies.heave_pitch_search import SearchData, candidate_matrices, simulate_search_data
+from seatrial_studies.seaway import HEADINGS, SIGNIFICANT_HEIGHT, SPEED, theoretical_coefficients
+from seatrial_studies.study_file import Declared, read_study
 
 # What Qi et al. 2025 print: tables 2 to 5, statements, and what figures show.
 
-SOURCE = (
-    "Qi Zhigang, Zhang Hao, Li Bing, Lu Zhe: Ship parameter identification method based on improved wild horse "
-    "optimizer (in Chinese), 2025; the text at hand names neither journal nor DOI"
-)
+SOURCE = read_study("qi2025").source
 
 
 class SearchAlgorithm(StrEnum):
@@ -30,73 +28,30 @@ class SearchAlgorithm(StrEnum):
     IWHO = "IWHO"
 
 
-_ESTIMATES = {
-    (90, SearchAlgorithm.PSO): (9.446e5, 8.902e6, 2.830e8, 1.777e7, 7.901e5, 1.480e7, 4.077e8, 2.296e6),
-    (90, SearchAlgorithm.WHO): (8.098e5, 6.979e6, 2.336e8, 1.332e7, 8.496e5, 1.043e7, 2.637e8, 2.995e6),
-    (90, SearchAlgorithm.IWHO): (8.050e5, 7.720e6, 2.592e8, 1.477e7, 9.363e5, 1.155e7, 2.874e8, 3.322e6),
-    (135, SearchAlgorithm.PSO): (5.569e5, 5.248e6, 1.541e8, 9.509e6, 7.635e5, 7.879e6, 2.716e8, 1.616e6),
-    (135, SearchAlgorithm.WHO): (6.157e5, 2.955e6, 1.373e8, 7.090e6, 7.394e5, 8.486e6, 1.882e8, 2.073e6),
-    (135, SearchAlgorithm.IWHO): (6.304e5, 3.274e6, 1.524e8, 7.842e6, 8.028e5, 9.412e6, 2.087e8, 2.263e6),
-    (180, SearchAlgorithm.PSO): (5.815e5, 2.396e6, 1.348e8, 6.594e6, 7.782e5, 8.835e6, 1.944e8, 3.123e6),
-    (180, SearchAlgorithm.WHO): (6.102e5, 2.583e6, 1.368e8, 6.093e6, 7.058e5, 8.216e6, 1.825e8, 2.167e6),
-    (180, SearchAlgorithm.IWHO): (6.107e5, 2.652e6, 1.373e8, 6.610e6, 7.409e5, 8.960e6, 1.879e8, 2.360e6),
+class PrintedEstimate(Declared):
+    """A column of tables 2 to 4: estimates, magnitudes in the order of COEFFICIENTS, errors [%], seconds of table 5."""
+
+    heading: int
+    algorithm: SearchAlgorithm
+    estimates: tuple[float, ...]
+    errors: tuple[float, ...]
+    seconds: float
+
+
+PRINTED = {
+    (printed.heading, printed.algorithm): printed
+    for printed in map(PrintedEstimate.model_validate, read_study("qi2025").published["estimates"])
 }
-_ERRORS = {
-    (90, SearchAlgorithm.PSO): (17.42, 15.66, 9.05, 20.17, 15.66, 27.72, 41.31, 30.91),
-    (90, SearchAlgorithm.WHO): (0.65, 9.98, 9.88, 9.94, 9.32, 10.02, 8.60, 9.90),
-    (90, SearchAlgorithm.IWHO): (0.06, 0.43, 0.12, 0.14, 0.06, 0.35, 0.38, 0.05),
-    (135, SearchAlgorithm.PSO): (11.70, 59.95, 1.01, 20.90, 4.96, 16.44, 29.88, 28.72),
-    (135, SearchAlgorithm.WHO): (2.44, 9.94, 9.97, 9.86, 7.96, 7.71, 10.01, 8.56),
-    (135, SearchAlgorithm.IWHO): (0.11, 0.21, 0.07, 0.29, 0.06, 0.18, 0.19, 0.18),
-    (180, SearchAlgorithm.PSO): (4.69, 10.03, 2.14, 0.25, 5.16, 1.30, 3.79, 32.57),
-    (180, SearchAlgorithm.WHO): (0.02, 7.81, 0.65, 7.84, 4.62, 8.21, 2.56, 8.02),
-    (180, SearchAlgorithm.IWHO): (0.09, 1.10, 0.29, 0.02, 0.12, 0.10, 0.32, 0.17),
-}
-# table 1: quantity, symbol, unit, printed value, name of the value used here, remark
-PRINTED_SHIP: tuple[tuple[str, str, str, float, str, str], ...] = (
-    ("mass", "m", "kg", 4.42e5, "m", "known to the search"),
-    (
-        "pitch moment of inertia",
-        "I5",
-        "kg m²",
-        9.945e7,
-        "I5",
-        "known to the search; radius 15 m, a quarter of the length",
-    ),
-    ("draught", "h", "m", 2.27, "d", "for the forces of the waves"),
-    ("equivalent radius", "rr", "m", 30.0, "", "taken for half the length: L = 60 m"),
-    ("equivalent section", "ss", "m²", 16.2, "", "taken for beam times draught: B = 7.14 m"),
-    ("restoring coefficient", "c33", "N/m", 3.15e6, "c33", "known to the search"),
-    ("restoring coefficient", "c35", "N/rad", 6.83e6, "c35", "known to the search"),
-    ("restoring coefficient", "c53", "N", 6.83e6, "c53", "known to the search"),
-    ("restoring coefficient", "c55", "N m/rad", 6.54e8, "c55", "known to the search"),
-    ("significant height", "h1/3", "m", 2.27, "h13", "the same number as the draught"),
-    ("speed", "v", "kn", 18.0, "v", "9.26 m/s"),
-)
-# s of computing time as printed, by heading in degrees
-PRINTED_SECONDS = {
-    90: {SearchAlgorithm.PSO: 7.903, SearchAlgorithm.WHO: 0.935, SearchAlgorithm.IWHO: 1.122},
-    135: {SearchAlgorithm.PSO: 7.661, SearchAlgorithm.WHO: 0.928, SearchAlgorithm.IWHO: 1.194},
-    180: {SearchAlgorithm.PSO: 7.681, SearchAlgorithm.WHO: 0.972, SearchAlgorithm.IWHO: 1.180},
-}
-# motions at 45 degrees that figures 1, 2 and figures 6, 7 show of the same condition: heave m, pitch degrees
-FIGURES_1_2, FIGURES_6_7 = (0.3, 0.3), (0.15, 0.15)
-# m, largest heave upwards in figure 6, whose least is that of FIGURES_6_7
-FIGURE_6_TOP = 0.10
-# where figure 5 ends upwards, and the iterations at which its curve rises again
-FIGURE_5_TOP = 0.010
-REBOUND_ITERATIONS = (50, 150)
-PRINTED_ERROR_COUNT = sum(len(errors) for errors in _ERRORS.values())
 
 
 def printed_estimate(heading: int, algorithm: SearchAlgorithm) -> Array:
     """Printed estimates, magnitudes, (8,) in the order of COEFFICIENTS."""
-    return np.array(_ESTIMATES[heading, algorithm])
+    return np.array(PRINTED[heading, algorithm].estimates)
 
 
 def printed_error(heading: int, algorithm: SearchAlgorithm) -> Array:
     """Printed relative errors, per cent, (8,): of the mean of ten runs."""
-    return np.array(_ERRORS[heading, algorithm])
+    return np.array(PRINTED[heading, algorithm].errors)
 
 
 def true_values(heading: int) -> Array:
@@ -168,7 +123,6 @@ class WildHorseAudit:
     sign_effect: dict[int, tuple[float, float]]
     saturated_values: tuple[int, int]
     median_extremes: tuple[float, float]
-    significant_amplitudes: tuple[float, float]
     kinematic_pitch: float
     spectrum_heights: tuple[float, float]
     step_rank: int
@@ -178,7 +132,6 @@ class WildHorseAudit:
 def audit(seas: list[SearchData], seed: int) -> WildHorseAudit:
     """Everything that needs no search; `seas` at 45 degrees."""
     tops = np.array([np.abs(s.states[:, [0, 2]]).max(axis=0) for s in seas])
-    heave, pitch = _statistics_at_45()
     return WildHorseAudit(
         {h: _implied_speeds(h) for h in HEADINGS},
         {h: _implied_frequency(h) for h in HEADINGS},
@@ -187,7 +140,6 @@ def audit(seas: list[SearchData], seed: int) -> WildHorseAudit:
         {h: _sign_effect(h, seed) for h in HEADINGS},
         _saturation(),
         (float(np.median(tops[:, 0])), math.degrees(float(np.median(tops[:, 1])))),
-        (heave, pitch),
         _kinematic_pitch(),
         _spectrum_heights(),
         _step_rank(seas[0]),
@@ -234,18 +186,6 @@ def _saturation() -> tuple[int, int]:
     errors = np.concatenate([recomputed_error(h, SearchAlgorithm.WHO) for h in (90, 135)])
     low, high = SATURATED_RANGE
     return int(np.sum((errors >= low) & (errors <= high))), len(errors)
-
-
-def _statistics_at_45() -> tuple[float, float]:
-    """Significant amplitudes of heave [m] and pitch [deg] with the 90 degree coefficients, exact in the waves."""
-    spectrum = ittc(SIGNIFICANT_HEIGHT)
-    omega = np.linspace(*spectrum.band(), 2000)
-    omega_e = encounter_frequency(omega, SPEED, math.radians(45.0))
-    response = frequency_response(linear_system(held_force_ship(45), ("z", "theta")), omega_e)[:, :, :2]
-    forces = np.stack(box_hull().forces(omega, SPEED, math.radians(45.0)), axis=1)
-    motion = np.einsum("kyu,ku->ky", response, forces)
-    heave, pitch = (motion_statistics(spectrum, omega, omega_e, motion[:, j]).significant for j in (0, 1))
-    return heave, math.degrees(pitch)
 
 
 def _kinematic_pitch() -> float:

@@ -36,15 +36,14 @@ from seatrial_studies.heave_pitch_search import (
 )
 from seatrial_studies.qi2025.published import SearchAlgorithm
 from seatrial_studies.seaway import HEADINGS
+from seatrial_studies.study_file import study_setting
 
 # What the mean of ten runs is worth: the paper's ten against tens drawn from many runs of the same search.
 
-# runs whose mean the paper prints
-RUNS = 10
-# probability that one of three checks fails though the printed ten are runs of the search repeated here; our choice
-FAMILY_PROBABILITY = 0.05
-# tens drawn with replacement for a quantile (Efron 1979); our choice
-BOOTSTRAP_TENS = 10_000
+FEWER_RUNS = study_setting("qi2025", "runs", int)
+RUNS, ITERATIONS = FEWER_RUNS.value, study_setting("qi2025", "iterations", int).value
+FAMILY_PROBABILITY = study_setting("qi2025", "family_probability", float).value
+BOOTSTRAP_TENS = study_setting("qi2025", "drawn_tens", int).value
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,12 +95,7 @@ def model_state_objective(
 
 # The paper's searches made again: the setting nearest to its IWHO, the same off centre, and the whole record.
 
-# iterations of a search, runs of a setting in the quick version
-ITERATIONS, QUICK_RUNS = 200, 5
-# how often the ten runs are made again, for the scatter of what they give
-TEN_RUN_REPEATS, QUICK_TEN_RUN_REPEATS = 10, 2
-# runs of IWHO with parts left out, at each heading; our choice
-ABLATION_RUNS, QUICK_ABLATION_RUNS = 10, 2
+REPEATS, PART_RUNS = study_setting("qi2025", "repeats", int), study_setting("qi2025", "part_runs", int)
 # the heading of the paper's figures, whose coefficients it does not print
 FIGURE_HEADING = 45
 
@@ -188,7 +182,7 @@ def reproduce_searches(*, quick: bool, seed: int, report_progress: ProgressRepor
             found |= _search_setting(setting, heading, seas[heading][: _run_count(setting, heading, quick)], seed)
     if report_progress:
         report_progress("the ten runs again")
-    repeats = QUICK_TEN_RUN_REPEATS if quick else TEN_RUN_REPEATS
+    repeats = REPEATS.in_version(quick=quick)
     again = {
         h: _repeat_ten_runs(h, found[SearchSetting.PAPER, h, SearchAlgorithm.IWHO], repeats, seed) for h in HEADINGS
     }
@@ -201,7 +195,7 @@ def _run_count(setting: SearchSetting, heading: int, quick: bool) -> int:
         return RUNS
     if heading == FIGURE_HEADING:
         return 1
-    return QUICK_RUNS if quick and setting not in TEN_RUN_SETTINGS else RUNS
+    return FEWER_RUNS.in_version(quick=quick and setting not in TEN_RUN_SETTINGS)
 
 
 def _repeat_ten_runs(heading: int, first_ten: RepeatedSearches, count: int, seed: int) -> TenRuns:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro import MOTIONS, SectionMotion, section_hydrodynamics
+from seatrial_studies.cross_validation import jackknife_error
 from seatrial_studies.section2d.responses import (
     FORM,
     HEAVE_PERIOD,
@@ -416,12 +417,6 @@ def fit_with_extra(
 ) -> OscillatorFit:
     """One coefficient more."""
     return fit_oscillator(start, observations, (*mode.free, coefficient), mode.scales)
-
-
-def jackknife_error(values: Sequence[float]) -> float:
-    """Standard error from values with one period left out each (Tukey 1958, Ann. Math. Stat. 29, 614)."""
-    given = np.asarray(values, dtype=float)
-    return float(np.sqrt((len(given) - 1) / len(given) * np.sum((given - given.mean()) ** 2)))
 
 
 # Sway stiffness: spring tensions over the camera's sway, its clock's delay and drift fitted along.

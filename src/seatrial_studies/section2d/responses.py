@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -14,17 +14,19 @@ from seatrial.core.values import Array, InputError, Record
 from seatrial.data.check import with_standard_signs
 from seatrial.data.read import ColumnSpec, Layout, read_record
 from seatrial.physics.hydro import LewisForm, group_velocity, wavenumber
+from seatrial_studies.study_file import study_setting
 
 # What is documented of the flume, the section and its holding; how the files are laid out.
 
-SOURCE = (
-    "Regular beam waves on a 2-D ship section, NTNU (open data, CC0): sway-heave-roll (3PPH), sway-heave (4PPH) and "
-    "heave-roll (6PPH) in a flume 0.6 m wide; no paper's claims are judged, the documented values are"
-)
+
+def _documented(*names: str) -> Iterator[float]:
+    return (study_setting("section2d", name, float).value for name in names)
+
+
 RHO, G = 1000.0, 9.81
-BEAM, DRAUGHT, LENGTH = 0.40, 0.20, 0.586
-MASS, KG, GM, ROLL_RADIUS = 46.8, 0.108, 0.0629, 0.36 * BEAM
-DEPTH, WIDTH, TO_MODEL, ROUND_TRIP = 1.0, 0.6, 7.0, 12.0
+BEAM, DRAUGHT, LENGTH, MASS, KG, GM = _documented("beam", "draught", "length", "mass", "KG", "GM")
+DEPTH, WIDTH, TO_MODEL, ROUND_TRIP = _documented("depth", "width", "to_model", "round_trip")
+ROLL_RADIUS = study_setting("section2d", "roll_radius", float).value * BEAM
 AREA_COEFFICIENT = MASS / (RHO * BEAM * DRAUGHT * LENGTH)
 FORM = LewisForm.from_dimensions(BEAM, DRAUGHT, AREA_COEFFICIENT)
 
@@ -34,10 +36,9 @@ ROLL_INERTIA = MASS * ROLL_RADIUS**2
 ROLL_AXIS = DRAUGHT - KG
 
 # documented truth
-HEAVE_PERIOD, ROLL_PERIOD = 1.17, 1.26
-SWAY_STIFFNESS = (59.2, 60.9)
-RIG_DAMPING = 8.7
-HEIGHTS = {1: 0.024, 2: 0.040}
+HEAVE_PERIOD, ROLL_PERIOD, RIG_DAMPING = _documented("heave_period", "roll_period", "rig_damping")
+SWAY_STIFFNESS = tuple(study_setting("section2d", "sway_stiffness", list).value)
+HEIGHTS = dict(enumerate(study_setting("section2d", "heights", list).value, start=1))
 
 # not documented: a search over all spacings leaves this one arrangement of the probes (the mirrored one apart)
 PROBES = ("zeta_1", "zeta_2", "zeta_3", "zeta_4")
@@ -440,7 +441,7 @@ class SectionResponse:
         heave: up, from the mean of both accelerometers, m/m.
         roll: starboard over port accelerometer, m/m: roll angle times the distance between them.
         sway: from the accelerometer, m/m; force: holding force, N/m.
-        camera_heave, camera_roll: amplitudes only; the camera's clock is its own. Zero where it is dead.
+        camera_sway: amplitude only; the camera's clock is its own. Zero where it is dead.
         relative_error: relative standard error of the heave amplitude by the harmonic fit.
     """
 
@@ -454,8 +455,6 @@ class SectionResponse:
     roll: complex
     sway: complex
     force: complex
-    camera_heave: float
-    camera_roll: float
     camera_sway: float
     relative_error: float
 
@@ -499,7 +498,6 @@ def measure_response(run: FlumeRun, probes: Probes, timing: Timing = STEADY_TIMI
     up = harmonics(time, -0.5 * (record["z_ddot_1"] + record["z_ddot_2"])[rows], w, HARMONIC_ORDERS)
     difference = first(record["z_ddot_2"] - record["z_ddot_1"])
     turned = [first(record[s]) for s in ("v_dot", "F_y")]
-    camera = [abs(first(record[s])) for s in ("z", "phi", "y0")]
     return SectionResponse(
         run=run,
         period_count=round((time[-1] - time[0]) / run.period),
@@ -511,9 +509,7 @@ def measure_response(run: FlumeRun, probes: Probes, timing: Timing = STEADY_TIMI
         roll=-difference / w**2 / onward,
         sway=-turned[0] / w**2 / onward,
         force=turned[1] / onward,
-        camera_heave=camera[0] / abs(onward),
-        camera_roll=camera[1] / abs(onward),
-        camera_sway=camera[2] / abs(onward),
+        camera_sway=abs(first(record["y0"])) / abs(onward),
         relative_error=up.relative_error,
     )
 

@@ -3,9 +3,9 @@
 import time
 
 from seatrial.core.results import Study
-from seatrial.core.values import ProgressReporter, versions
+from seatrial.core.values import ProgressReporter
 from seatrial_studies.song2025.audit import assumed_parameter_sets, audit
-from seatrial_studies.song2025.figures import figures, predictions
+from seatrial_studies.song2025.facts import FACTS, SupportVectorEvidence, predictions
 from seatrial_studies.song2025.generalisation import (
     SPEED_FACTORS,
     compare_craft,
@@ -17,12 +17,10 @@ from seatrial_studies.song2025.generalisation import (
     steady_drift_angle,
     unique_sensitivity,
 )
-from seatrial_studies.song2025.published import CORRECTED, SOURCE, TRUTH, PublishedManoeuvre, reference_record
+from seatrial_studies.song2025.published import CORRECTED, TRUTH, PublishedManoeuvre, reference_record
 from seatrial_studies.song2025.reproduction import cleaning_ablation, reproduce_regressions
-from seatrial_studies.song2025.tables import tables
-from seatrial_studies.song2025.verdicts import SupportVectorEvidence, answer, checks, claims
+from seatrial_studies.study_page import study_from
 
-QUESTION = "Do support vectors identify the coefficients of a waterjet craft from zigzags, and what does better?"
 RUNS = (
     PublishedManoeuvre.CONSECUTIVE,
     PublishedManoeuvre.ZIGZAG_20,
@@ -73,18 +71,4 @@ def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -
         speed_predictions(crafts, SPEED_FACTORS),
         heading_controller_costs(costs),
     )
-    return Study(
-        name="song2025",
-        source=SOURCE,
-        title="Support vectors and the coefficients of a waterjet craft: a published pipeline repeated",
-        question=QUESTION,
-        answer=answer(evidence),
-        claims=claims(evidence),
-        checks=checks(evidence),
-        tables=tables(evidence),
-        figures=figures(evidence),
-        predictions=predictions(evidence),
-        seed=seed,
-        elapsed_s=time.perf_counter() - began,
-        versions=versions(),
-    )
+    return study_from("song2025", FACTS, evidence, seed=seed, began=began, predictions=predictions(evidence))

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import sympy as sp
@@ -18,7 +18,6 @@ from seatrial.estimation.regress import (
     features,
 )
 from seatrial.physics.models import waterjet
-from seatrial.physics.simulate import inputs_of
 from seatrial_studies.song2025.generalisation import prediction_accuracy
 from seatrial_studies.song2025.published import (
     APPROACH_SPEED,
@@ -31,12 +30,10 @@ from seatrial_studies.song2025.published import (
     TABLE_3,
     TABLE_4,
     TRUTH,
-    Accuracy,
     CoefficientSet,
     MotionEquation,
     PublishedManoeuvre,
     Table2Column,
-    drift_angle,
     manoeuvre_record,
     printed_coefficients,
     reference_record,
@@ -46,36 +43,9 @@ from seatrial_studies.song2025.published import (
     with_expressions,
 )
 
-# Misprints that show when the equations are worked through: dimensions, equations (1), (14), (27), thrust.
+# Misprints that show when the equations are worked through: equations (1), (14), (27), thrust.
 
-# powers of kg, m, s
-Dimension = tuple[int, int, int]
-FORCE_DIMENSION: Dimension = (1, 1, -2)
-_Q_DIMENSION: Dimension = (1, -1, 0)
-_SPEED_DIMENSION: Dimension = (0, 1, -1)
 _FORCE_LETTERS = {MotionEquation.SURGE: "X", MotionEquation.SWAY: "Y", MotionEquation.YAW: "N"}
-
-
-@dataclass(frozen=True)
-class ForceDimensions:
-    """Powers of kg, m, s: a force, Y_vv |v| of eq. (2) as printed, Y_vv v|v| (coefficients times rho L d / 2)."""
-
-    force: Dimension
-    printed: Dimension
-    corrected: Dimension
-
-
-def force_dimensions() -> ForceDimensions:
-    """Y_rr |r| and N_rr |r| go the same way, with L r for v."""
-    return ForceDimensions(
-        FORCE_DIMENSION,
-        _product(_Q_DIMENSION, _SPEED_DIMENSION),
-        _product(_product(_Q_DIMENSION, _SPEED_DIMENSION), _SPEED_DIMENSION),
-    )
-
-
-def _product(a: Dimension, b: Dimension) -> Dimension:
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
 def parenthesis_factors() -> dict[MotionEquation, float]:
@@ -180,23 +150,18 @@ class Equation27Readings:
     """Readings of eq. (27) for a correlation matrix A, 2-norms.
 
     Attributes:
-        with_inverse: |A| |A^-1|.
-        by_singular_values: largest over smallest singular value, eq. (28): the same.
+        with_inverse: |A| |A^-1|, which is the largest over the smallest singular value, eq. (28).
         without_inverse: |A| |A|, if the inverse is left out.
     """
 
     with_inverse: float
-    by_singular_values: float
     without_inverse: float
 
 
 def equation_27_readings(correlation: Array) -> Equation27Readings:
     """Return the readings of eq. (27) for a correlation matrix (k, k)."""
     size = float(np.linalg.norm(correlation, 2))
-    values = np.linalg.svd(correlation, compute_uv=False)
-    return Equation27Readings(
-        size * float(np.linalg.norm(np.linalg.inv(correlation), 2)), float(values[0] / values[-1]), size**2
-    )
+    return Equation27Readings(size * float(np.linalg.norm(np.linalg.inv(correlation), 2)), size**2)
 
 
 @dataclass(frozen=True)
@@ -246,18 +211,15 @@ class FeatureConditions:
     the whole (Cauchy's interlacing theorem): sway's condition number is never below yaw's, whatever the record.
 
     Attributes:
-        printed: as labelled; labels_exchanged: labels of surge and sway exchanged.
+        labels_exchanged: the printed ones, labels of surge and sway exchanged.
         plain: ours, features of eq. (14); improved: ours, differenced and centred, eq. (17), (18).
         correlations: ours, plain, each (k, k).
-        is_possible: whether sway's is at least yaw's, as printed and swapped.
     """
 
-    printed: dict[MotionEquation, float]
     labels_exchanged: dict[MotionEquation, float]
     plain: dict[MotionEquation, float]
     improved: dict[MotionEquation, float]
     correlations: dict[MotionEquation, Array]
-    is_possible: tuple[bool, bool]
 
 
 def feature_conditions(series: Record) -> FeatureConditions:
@@ -265,12 +227,10 @@ def feature_conditions(series: Record) -> FeatureConditions:
     plain, improved = feature_correlations(series, Euler()), feature_correlations(series, DIFFERENCED_AND_CENTRED)
     swapped = {equation: TABLE_3[LABELS_EXCHANGED[equation]] for equation in MotionEquation}
     return FeatureConditions(
-        dict(TABLE_3),
         swapped,
         {e: float(np.linalg.cond(a)) for e, a in plain.items()},
         {e: float(np.linalg.cond(a)) for e, a in improved.items()},
         plain,
-        (_is_nested(TABLE_3), _is_nested(swapped)),
     )
 
 
@@ -281,26 +241,19 @@ def feature_correlations(series: Record, operator: DerivativeOperator) -> dict[M
     return {MotionEquation(s.equations[0]): np.asarray(np.corrcoef(s.matrix, rowvar=False)) for s in made}
 
 
-def _is_nested(numbers: dict[MotionEquation, float]) -> bool:
-    return numbers[MotionEquation.SWAY] >= numbers[MotionEquation.YAW]
-
-
 @dataclass(frozen=True)
 class Table4Implication:
     """What a cell of table 4 says together with the reference's own motion.
 
     Attributes:
-        deviation: standard deviation of the reference motion, m/s or rad/s; largest: its largest magnitude.
-        least_rmse: smallest root mean square error that the printed CC allows, deviation sqrt(1 - CC^2).
+        largest: largest magnitude of the reference motion, m/s or rad/s.
         amplitude_ratio: ratio of standard deviations, predicted over reference, that CC and RMSE imply
             where the mean has no error, which would explain some of the RMSE; NaN where no prediction has both.
     """
 
     run: PublishedManoeuvre
     channel: str
-    deviation: float
     largest: float
-    least_rmse: float
     amplitude_ratio: float
 
 
@@ -314,8 +267,7 @@ def _table_4_implication(run: PublishedManoeuvre, channel: str, values: Array) -
     cc, deviation = TABLE_4[run].cc[channel], float(np.std(values))
     inner = cc**2 - 1.0 + (TABLE_4[run].rmse[channel] / deviation) ** 2
     amplitude = cc + math.sqrt(inner) if inner >= 0.0 else math.nan
-    largest = float(np.max(np.abs(values)))
-    return Table4Implication(run, channel, deviation, largest, deviation * math.sqrt(1.0 - cc**2), amplitude)
+    return Table4Implication(run, channel, float(np.max(np.abs(values))), amplitude)
 
 
 # Misprints that show when the craft is simulated as printed: signs of table 2, equations (2) and (3).
@@ -353,15 +305,13 @@ class UndampedSway:
 
     Attributes:
         divergence_times: run -> s after which the motion leaves all bounds, as printed; infinite where it does not.
-        corrected_accuracy: run -> accuracy with Y_vv negative.
+        corrected_cc: channel -> CC in the 35/35 zigzag with Y_vv negative.
         critical_drift: deg beyond which Y_v + Y_vv |v|/U is positive, so that sway is driven, as printed.
-        largest_drifts: run -> largest drift of the truth, deg.
     """
 
     divergence_times: dict[PublishedManoeuvre, float]
-    corrected_accuracy: dict[PublishedManoeuvre, Accuracy]
+    corrected_cc: dict[str, float]
     critical_drift: float
-    largest_drifts: dict[PublishedManoeuvre, float]
 
 
 def undamped_sway() -> UndampedSway:
@@ -371,12 +321,11 @@ def undamped_sway() -> UndampedSway:
         run: reference_record(run)
         for run in (PublishedManoeuvre.ZIGZAG_20, PublishedManoeuvre.ZIGZAG_35, PublishedManoeuvre.TURN_35)
     }
-    values = printed_coefficients(Table2Column.IMPROVED)
+    values, zigzag = printed_coefficients(Table2Column.IMPROVED), references[PublishedManoeuvre.ZIGZAG_35]
     return UndampedSway(
         {run: _divergence_time(printed, record) for run, record in references.items()},
-        {run: prediction_accuracy(record, replay_inputs(corrected, record)) for run, record in references.items()},
+        prediction_accuracy(zigzag, replay_inputs(corrected, zigzag)).cc,
         math.degrees(math.asin(-values["Y_v"] / values["Y_vv"])),
-        {run: float(np.max(np.abs(drift_angle(record)))) for run, record in references.items()},
     )
 
 
@@ -385,40 +334,28 @@ class PortStarboardAsymmetry:
     """What alpha v in place of alpha u in Y_P, eq. (3), and |v|, |r| in Y_H, N_H, eq. (2), do to a symmetric craft.
 
     Attributes:
-        force_asymmetry: binding -> rms of the force plus that of the mirrored state, over the force's rms, along the
-            20/20 zigzag, corrected and as printed. A symmetric craft has 0, an even force 2.
         jet_yaw_rates: deg/s of yaw at the end of a 20 deg turn to starboard and to port, eq. (3) as printed.
-        jet_drifts: deg of drift there.
         corrected_yaw_rates: deg/s of yaw with alpha u.
         hull_divergence_times: s after which the motion leaves all bounds on the nozzle history of these turns, eq. (2)
             as printed; infinite where it does not.
     """
 
-    force_asymmetry: dict[str, tuple[float, float]]
     jet_yaw_rates: tuple[float, float]
-    jet_drifts: tuple[float, float]
     corrected_yaw_rates: tuple[float, float]
     hull_divergence_times: tuple[float, float]
 
 
 def port_starboard_asymmetry() -> PortStarboardAsymmetry:
-    """Return forces at mirrored states, and turns to either side."""
+    """Return turns to either side."""
     craft = TRUTH.craft()
     jet, hull = jet_as_printed(craft), hull_as_printed(craft)
-    record = manoeuvre_record(craft, PublishedManoeuvre.ZIGZAG_20)
-    asymmetries = {
-        name: (force_asymmetry(craft, record, name), force_asymmetry(printed, record, name))
-        for name, printed in (("Y_P", jet), ("Y_H", hull), ("N_H", hull))
-    }
     sides = (f"turning-circle:{TURN_ANGLE}", f"turning-circle:{TURN_ANGLE}:port")
     turns, corrected = (
         [manoeuvre_record(jet, side) for side in sides],
         [manoeuvre_record(craft, side) for side in sides],
     )
     return PortStarboardAsymmetry(
-        asymmetries,
         _pair([math.degrees(_final_value(turn, "r")) for turn in turns]),
-        _pair([float(drift_angle(turn)[-1]) for turn in turns]),
         _pair([math.degrees(_final_value(turn, "r")) for turn in corrected]),
         _pair([_divergence_time(hull, turn) for turn in corrected]),
     )
@@ -441,15 +378,6 @@ def hull_as_printed(craft: Model) -> Model:
     return with_expressions(craft, "waterjet_hull_as_printed", {"Y_H": Y_H, "N_H": N_H})
 
 
-def force_asymmetry(craft: Model, record: Record, binding: str) -> float:
-    """Rms of F(v, r, delta) + F(-v, -r, -delta) over that of F along a record; 0 where port and starboard are alike."""
-    states, inputs = record.matrix(craft.states), inputs_of(craft, record)
-    turned_states = states * np.array([-1.0 if s in ("v", "r", "psi", "y0") else 1.0 for s in craft.states])
-    turned_inputs = inputs * np.array([-1.0 if name == "delta" else 1.0 for name in craft.input_names])
-    here, there = craft.forces(states, inputs)[binding], craft.forces(turned_states, turned_inputs)[binding]
-    return _rms(here + there) / _rms(here)
-
-
 def _divergence_time(craft: Model, record: Record) -> float:
     again = replay_inputs(craft, record)
     return math.inf if len(again) == len(record) else float(again.time[-1])
@@ -463,35 +391,23 @@ def _pair(values: list[float]) -> tuple[float, float]:
     return values[0], values[1]
 
 
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))
-
-
 # Whether the signs of table 2 are misprints under other values of what the paper leaves open.
 
 TURN_PROGRAMME = "turning-circle:20"
-FRESH_WATER = 1000.0
+# kg/m^3, customary densities
+FRESH_WATER_DENSITY, SALT_WATER_DENSITY = 1000.0, 1025.0
 
 
-@dataclass(frozen=True)
-class AssumedParameters:
-    """Values of parameters that table 1 does not give."""
+def assumed_parameter_sets() -> tuple[dict[str, float], ...]:
+    """Values of parameters that table 1 does not give, one set a choice.
 
-    label: str
-    values: Mapping[str, float] = field(default_factory=dict)
-
-
-def assumed_parameter_sets() -> tuple[AssumedParameters, ...]:
-    """Our own; fresh water; each of the others a third less and more (the nozzle 0.05 L farther and nearer).
-
-    J_z acts in sum with I_z alone.
+    Our own; fresh water; each of the others a third less and more (the nozzle 0.05 L farther and nearer). J_z acts in
+    sum with I_z alone.
     """
     p = waterjet().parameters
-    made = [AssumedParameters("ours"), AssumedParameters("fresh water", {"rho": FRESH_WATER})]
-    for name in ("m_x", "m_y", "I_z", "A_j"):
-        made += [AssumedParameters(f"{name} {f:.2f} times", {name: f * p[name].value}) for f in (2.0 / 3.0, 4.0 / 3.0)]
-    made += [AssumedParameters(f"x_T {f:.2f} L", {"x_T": f * p["L"].value}) for f in (-0.5, -0.4)]
-    return tuple(made)
+    made = [{}, {"rho": FRESH_WATER_DENSITY}]
+    made += [{name: f * p[name].value} for name in ("m_x", "m_y", "I_z", "A_j") for f in (2.0 / 3.0, 4.0 / 3.0)]
+    return (*made, *({"x_T": f * p["L"].value} for f in (-0.5, -0.4)))
 
 
 @dataclass(frozen=True)
@@ -503,14 +419,11 @@ class SignCheck:
         completes_zigzag: whether the 20/20 zigzag is completed, N_v corrected and as printed.
         divergence_time: s in the 35/35 zigzag on the truth's nozzle history, improved column, N_v corrected;
             infinite where the motion stays bounded.
-        corrected_cc: the same with the sign of Y_vv changed, against the CFD column under the same choice.
     """
 
-    assumption: str
     yaw_rates: tuple[float, float]
     completes_zigzag: tuple[bool, bool]
     divergence_time: float
-    corrected_cc: dict[str, float]
 
     @property
     def confirms_misprints(self) -> bool:
@@ -521,14 +434,13 @@ class SignCheck:
         )
 
 
-def check_signs(assumption: AssumedParameters) -> SignCheck:
+def check_signs(assumed: Mapping[str, float]) -> SignCheck:
     """Return what the signs do under one choice (some 0.4 s)."""
-    readings = (TRUTH, CoefficientSet(Table2Column.CFD), CoefficientSet(Table2Column.IMPROVED, ("N_v",)), CORRECTED[2])
-    corrected, printed, driven, improved = (r.craft().with_values(assumption.values) for r in readings)
+    readings = (TRUTH, CoefficientSet(Table2Column.CFD), CoefficientSet(Table2Column.IMPROVED, ("N_v",)))
+    corrected, printed, driven = (r.craft().with_values(assumed) for r in readings)
     zigzag = manoeuvre_record(corrected, PublishedManoeuvre.ZIGZAG_35)
     again = replay_inputs(driven, zigzag)
     return SignCheck(
-        assumption.label,
         (
             _degrees_per_second(manoeuvre_record(corrected, TURN_PROGRAMME)["r"][-1]),
             _degrees_per_second(manoeuvre_record(printed, TURN_PROGRAMME)["r"][-1]),
@@ -538,16 +450,11 @@ def check_signs(assumption: AssumedParameters) -> SignCheck:
             simulate_manoeuvre(printed, PublishedManoeuvre.ZIGZAG_20).is_completed,
         ),
         math.inf if len(again) == len(zigzag) else float(again.time[-1]),
-        prediction_accuracy(zigzag, replay_inputs(improved, zigzag)).cc,
     )
 
 
 def _degrees_per_second(radians: float) -> float:
     return math.degrees(float(radians))
-
-
-# kg/m^3, customary densities
-FRESH_WATER_DENSITY, SALT_WATER_DENSITY = 1000.0, 1025.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -558,7 +465,6 @@ class SupportVectorAudit:
         reversed_turn: sign of N_v, table 2.
         undamped_sway: sign of Y_vv, table 2, improved column.
         asymmetry: alpha v in eq. (3), |v| and |r| in eq. (2).
-        dimensions: of eq. (2).
         parenthesis_factors: equation -> by what eq. (1) is too large without them.
         equation_14_fits: eq. (14) corrected, and with each misprint alone.
         equation_27_readings: eq. (27), sway.
@@ -572,7 +478,6 @@ class SupportVectorAudit:
     reversed_turn: ReversedTurn
     undamped_sway: UndampedSway
     asymmetry: PortStarboardAsymmetry
-    dimensions: ForceDimensions
     parenthesis_factors: dict[MotionEquation, float]
     equation_14_fits: tuple[Equation14Fit, ...]
     equation_27_readings: Equation27Readings
@@ -583,7 +488,7 @@ class SupportVectorAudit:
     sign_checks: tuple[SignCheck, ...]
 
 
-def audit(assumptions: Sequence[AssumedParameters]) -> SupportVectorAudit:
+def audit(assumptions: Sequence[Mapping[str, float]]) -> SupportVectorAudit:
     """Everything: some 3 s, and 0.4 s for each of the `others` (`choices()` or some of them)."""
     series = reference_record(PublishedManoeuvre.CONSECUTIVE)
     of_features = feature_conditions(series)
@@ -591,7 +496,6 @@ def audit(assumptions: Sequence[AssumedParameters]) -> SupportVectorAudit:
         reversed_turn(),
         undamped_sway(),
         port_starboard_asymmetry(),
-        force_dimensions(),
         parenthesis_factors(),
         equation_14_fits(series),
         equation_27_readings(of_features.correlations[MotionEquation.SWAY]),

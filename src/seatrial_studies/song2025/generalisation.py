@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Direction, Table
 from seatrial.core.values import Array, InputError, Record, spelling_hint
 from seatrial.data.example_series import JET_VELOCITY, SENSOR_NOISE, SLEW_RATE
 from seatrial.estimation.information import directions
@@ -25,11 +24,9 @@ from seatrial.physics.simulate import (
     trajectory,
 )
 from seatrial_studies.controller_cost import (
-    ControlLabels,
     ControlledMotion,
     ControllerCost,
     ControlTask,
-    controller_cost_table,
     controller_costs,
 )
 from seatrial_studies.song2025.published import (
@@ -39,11 +36,10 @@ from seatrial_studies.song2025.published import (
     CoefficientSet,
     ManoeuvreRun,
     PublishedManoeuvre,
-    drift_angle,
-    reference_record,
     replay_inputs,
     simulate_manoeuvre,
 )
+from seatrial_studies.study_file import study_setting
 
 # Simulations with the columns of table 2: zigzags and a turn compared with the truth's: accuracy, forces, drift.
 
@@ -61,8 +57,7 @@ class RunComparison:
         reference: the truth, helmsman in the loop.
         steered: the column's, helmsman in the loop, so that nozzle angles differ as in figures 4c and 7c.
         replayed: the column's on the reference's nozzle history; shorter than the reference where it diverges.
-        steered_accuracy, replayed_accuracy: over what reference and prediction have in common; None where one diverges.
-        largest_drift: of the replayed motion, deg.
+        replayed_accuracy: over what reference and prediction have in common; None where it diverges.
     """
 
     title: str
@@ -71,22 +66,7 @@ class RunComparison:
     reference: Record
     steered: ManoeuvreRun
     replayed: Record
-    steered_accuracy: Accuracy | None
     replayed_accuracy: Accuracy | None
-    largest_drift: float
-
-    @property
-    def divergence_time(self) -> float:
-        """Return the seconds after which the replayed motion leaves all bounds; infinite where it does not."""
-        return math.inf if len(self.replayed) == len(self.reference) else float(self.replayed.time[-1])
-
-
-def compare_runs(
-    coefficient_sets: Sequence[CoefficientSet], runs: Sequence[PublishedManoeuvre]
-) -> tuple[RunComparison, ...]:
-    """Compare every reading in every run: some 0.1 s each, 3 s where the consecutive zigzags are never finished."""
-    references = {run: reference_record(run) for run in runs}
-    return tuple(compare_run(reading, run, references[run]) for reading in coefficient_sets for run in runs)
 
 
 def compare_run(coefficient_set: CoefficientSet, run: PublishedManoeuvre, truth: Record) -> RunComparison:
@@ -104,9 +84,7 @@ def compare_craft(title: str, craft: Model, run: PublishedManoeuvre, truth: Reco
         truth,
         steered,
         again,
-        None if steered.record is None else prediction_accuracy(truth, steered.record),
         prediction_accuracy(truth, again) if len(again) == len(truth) else None,
-        float(np.max(np.abs(drift_angle(again)))),
     )
 
 
@@ -149,16 +127,12 @@ class Discrimination:
     """What accuracy sees of coefficients moved by 100 % along the weakest direction of the Fisher information.
 
     Attributes:
-        weakest_direction: the weakest of output error with the sensors' noise, with its standard deviation.
         changes: coefficient -> relative change of the moved craft.
         accuracy: of the moved craft on the same nozzle history, against the truth.
-        sensor_noise: channel -> the noise whose standard deviation the RMSE is to be compared with, SI units.
     """
 
-    weakest_direction: Direction
     changes: dict[str, float]
     accuracy: Accuracy
-    sensor_noise: dict[str, float]
 
     @property
     def changes_text(self) -> str:
@@ -180,7 +154,7 @@ def discrimination(series: Record) -> Discrimination:
     moved = {p.name: p.value + weakest.combination[p.name] * p.characteristic_scale for p in craft.parameters.free}
     changes = {p.name: moved[p.name] / p.value - 1.0 for p in craft.parameters.free}
     accuracy = prediction_accuracy(series, replay_inputs(craft.with_values(moved), series))
-    return Discrimination(weakest, changes, accuracy, {c: SENSOR_NOISE[c] for c in accuracy.cc})
+    return Discrimination(changes, accuracy)
 
 
 def fisher_information(craft: Model, record: Record) -> Array:
@@ -197,7 +171,7 @@ def fisher_information(craft: Model, record: Record) -> Array:
 
 # Conclusion 1, a wider range of speed: coefficients found at one speed predict the craft at half to twice of it.
 
-SPEED_FACTORS = (0.5, 0.75, 1.0, 1.5, 2.0)  # of the jet velocity, and so of the approach speed; our choice
+SPEED_FACTORS = tuple(study_setting("song2025", "speed_factors", list).value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -423,7 +397,6 @@ def _log_slopes(
 
 # The last row: an autopilot tuned on each method's coefficients and simulated on the true craft.
 
-TITLE = "What wrong coefficients cost a controller"
 TURN = math.radians(30.0)  # change of heading to be followed, our choice
 DURATION, TURN_STEP = 120.0, 0.25  # s; long enough for the turn, and a step well below the craft's time constants
 NOZZLE_LIMIT = math.radians(35.0)  # the largest nozzle angle of the paper's manoeuvres
@@ -432,16 +405,6 @@ START_GAINS = np.array([1.0, 3.0])  # KP [rad/rad], KD [s]: where the tuning sta
 NOZZLE = "delta"
 _STEP = HeadingStep(TURN, NOZZLE_LIMIT, NOZZLE, DURATION, TURN_STEP)
 _RUNAWAY = 100.0  # approach speeds beyond which a motion has run away; our choice
-_LABELS = ControlLabels(("KP", "KD, s"), "heading error rms, deg", "nozzle rms, deg")
-_NOTE = (
-    f"A change of heading by {math.degrees(TURN):.0f}° at 0.8 m/s, nozzle = KP error - KD r up to 35°, "
-    f"{DURATION:.0f} s, "
-    f"tuned by simulation of the craft that the coefficients describe for least heading variance plus "
-    f"{NOZZLE_WEIGHT:g}² "
-    "nozzle variance; then simulated on the true craft. 'Predicted': on the craft that the coefficients describe. "
-    "'Cost "
-    "over best': the sum that was to be least, on the true craft, over that of the controller tuned on the truth."
-)
 
 
 def heading_task() -> ControlTask[Model]:
@@ -471,8 +434,3 @@ def _turn(craft: Model, gains: Array) -> ControlledMotion:
 def heading_controller_costs(crafts: Mapping[str, Model]) -> tuple[ControllerCost, ...]:
     """Return what controllers tuned on these crafts cost on the true one."""
     return controller_costs(crafts, TRUTH.craft(), heading_task())
-
-
-def heading_controller_table(costs: tuple[ControllerCost, ...]) -> Table:
-    """Return the last table of the page."""
-    return controller_cost_table(TITLE, {"30° to starboard": costs}, _LABELS, _NOTE)

@@ -45,6 +45,7 @@ from seatrial_studies.song2025.published import (
     printed_coefficients,
     reference_record,
 )
+from seatrial_studies.study_file import study_setting
 
 # Lasso on the regressors as section 1.3.1 prints them: raw products of u, v, r on the forces X_H, Y_H, N_H.
 
@@ -85,15 +86,11 @@ def lasso_choice(record: Record, *, is_scaled: bool) -> tuple[tuple[str, ...], t
     return tuple(kept), tuple(dropped), penalties
 
 
-# s, windows of the weak form; series of noise; our choice
-WINDOW_S, NOISE_SERIES = 20.0, 6
-# support vectors: tube in standard deviations, penalty C, over a decade and more about scikit-learn's 0.1 and 1; our
-# choice, as neither is printed
-TUBE_WIDTHS, SVR_PENALTIES = (0.1, 0.03, 0.3, 0.01), (1.0, 0.1, 10.0)
-# m/s, standard deviations of white noise in u and v; our choice
-VELOCITY_NOISE = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
-# rho of eq. (17), from none to full differences
-QUASI_DIFFERENCES = (0.0, 0.5, 0.9, 0.99, 1.0)
+WINDOW_S = study_setting("song2025", "window_s", float).value
+NOISE_SERIES = study_setting("song2025", "noise_series", int).value
+TUBE_WIDTHS, SVR_PENALTIES = (study_setting("song2025", name, list) for name in ("tube_widths", "penalties"))
+VELOCITY_NOISE = study_setting("song2025", "velocity_noise", list)
+QUASI_DIFFERENCES = study_setting("song2025", "quasi_differences", list).value
 YAW_LENGTH = 9.8  # m: noise in r is that in u and v over one ship length
 
 
@@ -129,6 +126,11 @@ class EstimatorResult:
         """Return the largest of the relative errors' magnitudes."""
         return float(np.max(np.abs(self.errors)))
 
+    @property
+    def wrong_signs(self) -> int:
+        """Return how many coefficients have the other sign than the truth."""
+        return int(np.sum(self.values * true_coefficients() < 0.0))
+
 
 @dataclass(frozen=True, eq=False)
 class LassoSelection:
@@ -158,6 +160,16 @@ class SupportVectorSetting:
     def distance(self) -> float:
         """Return the root mean square of the distances."""
         return float(np.sqrt(np.mean(self.distances**2)))
+
+    @property
+    def median_distance(self) -> float:
+        """Return the median of the distances' magnitudes."""
+        return float(np.median(np.abs(self.distances)))
+
+    @property
+    def largest_distance(self) -> float:
+        """Return the largest of the distances' magnitudes."""
+        return float(np.max(np.abs(self.distances)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,13 +258,12 @@ def reproduce_regressions(
         for pipeline, column in (
             (replace(improved, operator=Euler()), Table2Column.ORIGINAL), (improved, Table2Column.IMPROVED)
         )
-        for c in SVR_PENALTIES[: 1 if quick else None]
-        for t in TUBE_WIDTHS[: 2 if quick else None]
+        for c in SVR_PENALTIES.in_version(quick=quick)
+        for t in TUBE_WIDTHS.in_version(quick=quick)
     )  # fmt: skip
     differences = _sweep(QUASI_DIFFERENCES, lambda rho: (clean, _least_squares(Differenced(Euler(), rho))))
     report("noise")
-    levels = VELOCITY_NOISE[1::2] if quick else VELOCITY_NOISE
-    noise = _noise_sweep(clean, levels, seed)
+    noise = _noise_sweep(clean, VELOCITY_NOISE.in_version(quick=quick), seed)
     report("output error")
     exact, ours, errors = _output_error(measured)
     ratio = float(np.sqrt(np.mean((ours.errors / errors) ** 2)))
@@ -416,8 +427,7 @@ def _output_error(measured: Record) -> tuple[EstimatorResult, EstimatorResult, A
 
 # Conclusion 2: what each step of the pipeline is worth, on the simulated series and on one with planted bad data.
 
-BAD_SHARE = 0.01  # share of the samples that are spoiled; our choice
-SPIKE = 10.0  # size of a planted outlier in standard deviations of its channel; our choice
+BAD_SHARE, SPIKE = study_setting("song2025", "bad_share", float).value, study_setting("song2025", "spike", float).value
 VELOCITIES = ("u", "v", "r")
 
 

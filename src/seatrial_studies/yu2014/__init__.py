@@ -5,11 +5,13 @@ import time
 import numpy as np
 
 from seatrial.core.results import Study
-from seatrial.core.values import ProgressReporter, versions
+from seatrial.core.values import ProgressReporter
 from seatrial.physics.loops import Preamplifier
+from seatrial_studies.study_file import study_setting
+from seatrial_studies.study_page import study_from
 from seatrial_studies.yu2014.audit import audit
+from seatrial_studies.yu2014.facts import FACTS, FinGainEvidence, responses_at_table_1
 from seatrial_studies.yu2014.published import (
-    SOURCE,
     TABLE_1,
     calibrated_K_q,
     performance,
@@ -19,7 +21,6 @@ from seatrial_studies.yu2014.published import (
 from seatrial_studies.yu2014.reproduction import compare_energy, fit_table_1, rms_variation, simulate_histories
 from seatrial_studies.yu2014.searches import (
     MS_LIMIT,
-    QUICK_SEEDS,
     SEEDS,
     SETTINGS,
     compare_weights,
@@ -31,12 +32,8 @@ from seatrial_studies.yu2014.searches import (
     time_domain_search,
     time_domain_seconds,
 )
-from seatrial_studies.yu2014.tables import figures, tables
-from seatrial_studies.yu2014.verdicts import FinGainEvidence, answer, checks, claims, responses_at_table_1
 
-QUESTION = "Does a genetic algorithm find the gains of a fin stabiliser that save most energy, and what beats them?"
-# fin-rate variance allowed, over the paper's; our choice
-RATES = np.linspace(0.5, 1.75, 11)
+RATES = np.linspace(*study_setting("yu2014", "rates", list).value)
 
 
 def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -> Study:
@@ -50,21 +47,7 @@ def study(*, quick: bool, seed: int, report_progress: ProgressReporter | None) -
     began = time.perf_counter()
     report = report_progress or (lambda _: None)
     evidence = _evidence(quick=quick, seed=seed, report=report)
-    return Study(
-        name="yu2014",
-        source=SOURCE,
-        title="Three gains of a fin stabiliser: a published genetic algorithm repeated",
-        question=QUESTION,
-        answer=answer(evidence),
-        claims=claims(evidence),
-        checks=checks(evidence),
-        tables=tables(evidence),
-        figures=figures(evidence),
-        seed=seed,
-        quick=quick,
-        elapsed_s=time.perf_counter() - began,
-        versions=versions(),
-    )
+    return study_from("yu2014", FACTS, evidence, seed=seed, began=began)
 
 
 def _evidence(*, quick: bool, seed: int, report: ProgressReporter) -> FinGainEvidence:
@@ -76,11 +59,11 @@ def _evidence(*, quick: bool, seed: int, report: ProgressReporter) -> FinGainEvi
     energies = tuple(compare_energy(fit) for fit in fits)
     regulators = {r: regulator_settings(r) for r in Preamplifier}
     report("the published search")
-    searched = tuple(search_over_seeds(setting, QUICK_SEEDS if quick else SEEDS, seed) for setting in SETTINGS)
+    searched = tuple(search_over_seeds(setting, SEEDS.in_version(quick=quick), seed) for setting in SETTINGS)
     report("the published search with fixed weights")
     weights = {r: compare_weights(r, seed) for r in Preamplifier}
     report("one search for all six conditions")
-    joint = {r: joint_optimum(r, QUICK_SEEDS, seed) for r in Preamplifier}
+    joint = {r: joint_optimum(r, SEEDS.in_version(quick=True), seed) for r in Preamplifier}
     if not quick:
         report("the search by 10,000 records of 1000 s, once")
     by_records = None if quick else time_domain_search(Preamplifier.WASHOUT, seed)

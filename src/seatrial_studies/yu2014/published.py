@@ -25,13 +25,11 @@ from seatrial.physics.loops import (
     variance,
 )
 from seatrial.physics.sea import Spectrum, ittc
+from seatrial_studies.study_file import Declared, read_study
 
 # What Yu et al. 2014 print: table 1, the searched box, what they say of it, and what they leave open.
 
-SOURCE = (
-    "Yu Lijun, Liu Shaoying, Wang Hui, Xiong Chaodong: Energy optimization for the fin stabilizer system based on a "
-    "genetic algorithm (in Chinese), CAAI Transactions on Intelligent Systems 9(4), 2014"
-)
+SOURCE = read_study("yu2014").source
 
 
 @dataclass(frozen=True)
@@ -74,55 +72,34 @@ class Table1Row:
         return f"{self.speed:.0f} / {self.heading:.0f}"
 
 
-TABLE_1 = (
-    Table1Row(18.0, 45.0, ControllerResult(0.49, 5.3, 75.23), ControllerResult(0.47, 4.1, 76.35)),
-    Table1Row(18.0, 90.0, ControllerResult(0.38, 5.07, 76.24), ControllerResult(0.39, 3.8, 75.92)),
-    Table1Row(18.0, 135.0, ControllerResult(0.36, 4.7, 77.33), ControllerResult(0.35, 3.2, 79.58)),
-    Table1Row(22.0, 45.0, ControllerResult(0.35, 3.2, 78.26), ControllerResult(0.33, 2.9, 80.38)),
-    Table1Row(22.0, 90.0, ControllerResult(0.32, 2.4, 79.13), ControllerResult(0.31, 2.5, 82.96)),
-    Table1Row(22.0, 135.0, ControllerResult(0.28, 2.6, 80.39), ControllerResult(0.25, 2.2, 84.43)),
-)
+class PublishedNumbers(Declared):
+    """What the study file quotes: the search, the fin, the records, table 1; units stand there."""
+
+    height: float
+    fin_limit: float
+    saturation: float
+    target_deg2: float
+    inertia: float
+    span: float
+    aspect: float
+    thickness: float
+    density: float
+    chord: float
+    chord_of_lever: float
+    record_seconds: float
+    step: float
+    table_1: tuple[Table1Row, ...]
+
+
+PUBLISHED = PublishedNumbers.model_validate(read_study("yu2014").published)
+TABLE_1 = PUBLISHED.table_1
 DESIGN_ROW, DESIGN_ROW_AT_22_KN = TABLE_1[1], TABLE_1[4]
 
 PUBLISHED_LOOP = fin_loop()
 GAIN_NAMES = PUBLISHED_LOOP.gains.names
 PUBLISHED_VALUES = PUBLISHED_LOOP.gain_values
 LOWER, UPPER = (np.array(ends) for ends in zip(*((p.lower, p.upper) for p in PUBLISHED_LOOP.gains), strict=True))
-HEIGHT = 3.3  # m, significant
-FIN_LIMIT, SATURATION = 22.0, 0.2  # deg, probability
-TARGET_DEG2 = 150.31  # as printed
-TARGET = math.radians(1.0) ** 2 * TARGET_DEG2
-INERTIA = 791.1611  # kg m^2
-RECORD_SECONDS, STEP = 1000.0, 0.1  # s
-
-# section 2.3, the fin
-SPAN, ASPECT, THICKNESS, DENSITY = 1.18, 0.53, 0.15, 7800.0
-CHORD, CHORD_OF_LEVER = 2.22, 2.2
-
-
-@dataclass(frozen=True)
-class FinGainStatement:
-    """What the paper says, translated, and where."""
-
-    source: str
-    text: str
-
-
-STATEMENTS = {
-    "rate": FinGainStatement("section 4", "the fin rate under the traditional PID is larger than under the GA's"),
-    "reduction": FinGainStatement("section 4", "the GA's roll reduction is slightly lower than the traditional PID's"),
-    "energy": FinGainStatement("abstract, section 5", "the GA effectively lowers the stabiliser's energy loss"),
-    "set": FinGainStatement("section 5", "where the PID was set, reduction drops slightly, energy is optimised"),
-    "optimal": FinGainStatement(
-        "sections 3, 5", "a set of optimal gains is found; the overall performance is the best"
-    ),
-    "search": FinGainStatement("section 3", "random weights escape local optima and slow search"),
-    "global": FinGainStatement(
-        "section 4", "the gains are optimal for all sea states and speeds: a global optimisation"
-    ),
-    "saturation": FinGainStatement("section 2.3", "the objectives secure a fin saturation of at most 20 %"),
-    "loop": FinGainStatement("section 1", "K_alpha is approximated as a constant"),
-}
+TARGET = math.radians(1.0) ** 2 * PUBLISHED.target_deg2
 
 
 # The published loop in both readings, in the seas of table 1, and the paper's objectives.
@@ -183,7 +160,7 @@ DESIGN_SEA = SeaCondition()
 @cache
 def effective_slope(sea: SeaCondition) -> EncounterSpectrum:
     """Return the effective wave slope."""
-    spectrum = sea.spectrum or ittc(HEIGHT)
+    spectrum = sea.spectrum or ittc(PUBLISHED.height)
     return sea_disturbance(
         spectrum,
         sea.speed * KNOT,

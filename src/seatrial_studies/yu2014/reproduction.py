@@ -11,18 +11,13 @@ from seatrial.physics.hydro import Complex, G
 from seatrial.physics.loops import ActuatorDrive, Performance, Preamplifier, TransferLoop, reversals_per_hour
 from seatrial.physics.sea import Spacing, WaveComponents, harmonic_sum, ittc, realise, short_crested
 from seatrial_studies.yu2014.published import (
-    ASPECT,
-    CHORD,
     DESIGN_ROW,
     DESIGN_SEA,
-    HEIGHT,
     HULL_FACTOR,
-    INERTIA,
     KNOT,
     LOWER,
+    PUBLISHED,
     PUBLISHED_VALUES,
-    RECORD_SECONDS,
-    SPAN,
     TABLE_1,
     UPPER,
     ControllerResult,
@@ -79,6 +74,10 @@ class Table1Fit:
     def sea(self, heading: float, speed: float) -> SeaCondition:
         """Return a sea of table 1 as fitted."""
         return SeaCondition(speed, heading if self.following_is_zero else 180.0 - heading, spreading=SPREADING)
+
+    def results(self, log_values: Array) -> list[ControllerResult]:
+        """Return the rows of a fitted column."""
+        return [self.row_result(log_values, row) for row in range(len(log_values))]
 
     def row_result(self, log_values: Array, row: int) -> ControllerResult:
         """Numbers of one row of `genetic` or `traditional`."""
@@ -181,7 +180,7 @@ def simulate_histories(fit: Table1Fit, seed: int) -> RollHistories:
     rng = np.random.default_rng([seed, 6])
     sea = fit.sea(DESIGN_ROW.heading, DESIGN_ROW.speed)
     long = realise(
-        ittc(HEIGHT), sea.speed * KNOT, math.radians(sea.heading), rng, count=LINES, spacing=Spacing.JITTERED
+        ittc(PUBLISHED.height), sea.speed * KNOT, math.radians(sea.heading), rng, count=LINES, spacing=Spacing.JITTERED
     )
     lines = long if sea.spreading is None else short_crested(long, rng, sea.spreading)
     time = np.arange(0.0, DURATION, SAMPLE)
@@ -229,7 +228,7 @@ def rms_variation(preamplifier: Preamplifier) -> float:
     w = seen.omega_e
     energy = np.abs(made.disturbance.frequency_response(w) / (1.0 + made.open_loop(w))) ** 2 * seen.energy
     squared = float(np.sum(energy**2 / np.gradient(w)))
-    return 0.5 * math.sqrt(2.0 * math.pi / RECORD_SECONDS * squared) / float(energy.sum())
+    return 0.5 * math.sqrt(2.0 * math.pi / PUBLISHED.record_seconds * squared) / float(energy.sum())
 
 
 # Energy, the paper's point: W in joules, what propulsion loses to fin drag and roll, reversals of the fins.
@@ -284,12 +283,12 @@ class EnergyComparison:
 
 def work(rate: float) -> float:
     """Return W [J] of eq. (3) at an rms fin rate [deg/s]."""
-    return ActuatorDrive(INERTIA, EFFICIENCY).energy(math.radians(rate) ** 2)
+    return ActuatorDrive(PUBLISHED.inertia, EFFICIENCY).energy(math.radians(rate) ** 2)
 
 
 def lift_slope() -> float:
     """Return C_L per radian at twice the aspect ratio, the hull a mirror (Whicker & Fehlner 1958, eq. (1), linear)."""
-    a = 2.0 * ASPECT
+    a = 2.0 * PUBLISHED.aspect
     return 1.8 * math.pi * a / (1.8 + math.sqrt(a**2 + 4.0))  # 1.8: 0.9 of 2 pi, over pi; unswept
 
 
@@ -300,8 +299,8 @@ def fin_drag_power(fin_rms: float, speed: float) -> float:
     """
     U = speed * KNOT
     C_L_squared = (lift_slope() * math.radians(fin_rms)) ** 2
-    C_D = PROFILE_DRAG + C_L_squared / (OSWALD * math.pi * 2.0 * ASPECT)
-    return 2.0 * 0.5 * SEA_WATER * U**3 * SPAN * CHORD * C_D
+    C_D = PROFILE_DRAG + C_L_squared / (OSWALD * math.pi * 2.0 * PUBLISHED.aspect)
+    return 2.0 * 0.5 * SEA_WATER * U**3 * PUBLISHED.span * PUBLISHED.chord * C_D
 
 
 def roll_power(roll_rate_rms: float) -> float:

@@ -25,15 +25,14 @@ from seatrial.physics.loops import Performance, Preamplifier, TransferLoop, five
 from seatrial.physics.sea import Spacing, bretschneider, ittc, jonswap, realise
 from seatrial.physics.simulate import loop_record
 from seatrial_studies.heave_pitch_search import is_smaller
+from seatrial_studies.study_file import study_setting
 from seatrial_studies.yu2014.published import (
     DESIGN_SEA,
-    HEIGHT,
     KNOT,
     LOWER,
+    PUBLISHED,
     PUBLISHED_LOOP,
     PUBLISHED_VALUES,
-    RECORD_SECONDS,
-    STEP,
     TABLE_1,
     UPPER,
     VARIANCE_ROWS,
@@ -53,11 +52,9 @@ from seatrial_studies.yu2014.reproduction import LINES, response_to_slope
 # The published genetic algorithm on the published objectives, over seeds.
 
 # searches in the full and in the quick version; our choice
-SEEDS, QUICK_SEEDS = 12, 4
-BITS = 17
+SEEDS, BITS = study_setting("yu2014", "seeds", int), study_setting("yu2014", "bits", int).value
 BOX = Box(LOWER, UPPER)
 FRAGILE_MS = 2.0
-TIMES_TITLE = "Time of one published search of 10,000 evaluations"
 
 
 @dataclass(frozen=True)
@@ -187,7 +184,7 @@ def compare_weights(preamplifier: Preamplifier, seed: int) -> WeightComparison:
             genetic_run(
                 objectives, BOX, GeneticSettings(bits=BITS, largest_weight=most), np.random.default_rng([seed, k])
             )
-            for k in range(SEEDS)
+            for k in range(SEEDS.value)
         ]
         for most in (GeneticSettings.largest_weight, 1)  # integers from 1 to 1: equal weights
     ]
@@ -212,11 +209,11 @@ def record_cost(loop: TransferLoop, gains: Array, seed: int) -> tuple[float, flo
     from scipy.signal import lsim
 
     states = state_space(loop)
-    disturbance = np.random.default_rng(seed).standard_normal(round(RECORD_SECONDS / STEP) + 1)
+    disturbance = np.random.default_rng(seed).standard_normal(round(PUBLISHED.record_seconds / PUBLISHED.step) + 1)
     system = (states.closed_loop_matrix(gains), states.b[:, None], states.c[None], np.zeros((1, 1)))
-    times = STEP * np.arange(len(disturbance))
+    times = PUBLISHED.step * np.arange(len(disturbance))
     return (
-        _least_cpu_time(lambda: loop_record(states, gains, disturbance, STEP)),
+        _least_cpu_time(lambda: loop_record(states, gains, disturbance, PUBLISHED.step)),
         _least_cpu_time(lambda: lsim(system, disturbance, times, interp=False)),
     )
 
@@ -245,13 +242,15 @@ def time_domain_seconds(seed: int) -> tuple[float, float]:
 
 MS_LIMIT = 2.0
 SHORT_CRESTED = SeaCondition(spreading=1.0, name="ITTC 3.3 m, short-crested")
-_JONSWAP = jonswap(HEIGHT, 2.0 * math.pi / ittc(HEIGHT).modal_frequency)
+_JONSWAP = jonswap(PUBLISHED.height, 2.0 * math.pi / ittc(PUBLISHED.height).modal_frequency)
 # seen by no search
 HELD_OUT_SEAS = (
     SeaCondition(spectrum=_JONSWAP, name="JONSWAP 3.3 m, 9.1 s, long-crested"),
     SeaCondition(spectrum=_JONSWAP, spreading=1.0, name="JONSWAP 3.3 m, 9.1 s, short-crested"),
-    SeaCondition(spectrum=bretschneider(HEIGHT, 9.7), spreading=1.0, name="Bretschneider 3.3 m, 9.7 s, short-crested"),
-    SeaCondition(spectrum=bretschneider(HEIGHT, 8.0), name="Bretschneider 3.3 m, 8 s, long-crested"),
+    SeaCondition(
+        spectrum=bretschneider(PUBLISHED.height, 9.7), spreading=1.0, name="Bretschneider 3.3 m, 9.7 s, short-crested"
+    ),
+    SeaCondition(spectrum=bretschneider(PUBLISHED.height, 8.0), name="Bretschneider 3.3 m, 8 s, long-crested"),
     SeaCondition(heading=135.0, spreading=1.0, name="ITTC 3.3 m, short-crested, 135°"),
     SeaCondition(heading=45.0, spreading=1.0, name="ITTC 3.3 m, short-crested, 45°"),
     SeaCondition(heading=45.0, name="ITTC 3.3 m, long-crested, 45°"),
@@ -511,8 +510,8 @@ class JointOptimum:
         gains: (3,), of the least larger one of roll and fin-rate variance over the paper's in the worst condition, Ms
             within 2 or the paper's own where that is larger.
         ratios: roll, fin and fin-rate variance over the paper's in each condition, (6, 3); Ms, published_Ms: (6,).
-        genetic_gains: the published search on the means of its objectives over the six, by seed (n, 3).
-        genetic_ratios: their roll, fin and fin-rate variance over the paper's, (n, 6, 3); genetic_Ms: worst (n,).
+        genetic_ratios: roll, fin and fin-rate variance over the paper's of the published search on the means of its
+            objectives over the six, by seed (n, 6, 3); genetic_Ms: worst (n,).
     """
 
     preamplifier: Preamplifier
@@ -520,7 +519,6 @@ class JointOptimum:
     ratios: Array
     Ms: Array
     published_Ms: Array
-    genetic_gains: Array
     genetic_ratios: Array
     genetic_Ms: Array
 
@@ -557,15 +555,13 @@ def joint_optimum(preamplifier: Preamplifier, seeds: int, seed: int) -> JointOpt
     gains = search(evolution, worst).point
     ratios, Ms = _judge(seas, paper_variances, gains[None])
     runs = [_genetic(seas, np.random.default_rng([seed, 9, k])) for k in range(seeds)]
-    answers = np.stack([run.gains for run in runs])
-    seen, peaks = _judge(seas, paper_variances, answers)
+    seen, peaks = _judge(seas, paper_variances, np.stack([run.gains for run in runs]))
     return JointOptimum(
         preamplifier,
         gains,
         ratios[0],
         Ms[0],
         np.array([float(p.Ms[0]) for p in paper]),
-        answers,
         seen,
         peaks.max(axis=1),
     )
@@ -616,7 +612,7 @@ def time_domain_search(preamplifier: Preamplifier, seed: int) -> TimeDomainSearc
     states, slope = state_space(of.loop), wave_slope_record(np.random.default_rng([seed, 10]))
 
     def by_records(points: Array) -> Array:
-        records = (loop_record(states, gains, slope, STEP) for gains in points)
+        records = (loop_record(states, gains, slope, PUBLISHED.step) for gains in points)
         with np.errstate(over="ignore", invalid="ignore"):
             variances = np.array([record.var(axis=0) for record in records])
         bounded = np.where(np.isfinite(variances) & (variances < _DIVERGED), variances, np.inf)
@@ -642,6 +638,8 @@ def time_domain_search(preamplifier: Preamplifier, seed: int) -> TimeDomainSearc
 def wave_slope_record(generator: np.random.Generator) -> Array:
     """Return the effective wave slope [rad] of 1000 s at 0.1 s, 18 kn, 90 deg, long-crested ITTC 3.3 m."""
     beta = math.radians(DESIGN_SEA.heading)
-    lines = realise(ittc(HEIGHT), DESIGN_SEA.speed * KNOT, beta, generator, count=LINES, spacing=Spacing.JITTERED)
-    time = np.arange(round(RECORD_SECONDS / STEP) + 1, dtype=np.float64) * STEP
+    lines = realise(
+        ittc(PUBLISHED.height), DESIGN_SEA.speed * KNOT, beta, generator, count=LINES, spacing=Spacing.JITTERED
+    )
+    time = np.arange(round(PUBLISHED.record_seconds / PUBLISHED.step) + 1, dtype=np.float64) * PUBLISHED.step
     return response_to_slope(lines, np.ones(len(lines.omega), dtype=np.complex128), np.asarray(time))

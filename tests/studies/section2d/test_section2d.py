@@ -14,9 +14,11 @@ from seatrial.core.results import Verdict
 from seatrial.core.values import InputError, Ship
 from seatrial.data.folder.document import document, strict_json
 from seatrial.estimation.sea import WaveResponses, fit_section
-from seatrial_studies.section2d import study, verdicts
+from seatrial_studies.cross_validation import jackknife_error
+from seatrial_studies.section2d import study
 from seatrial_studies.section2d.analysis import SectionAnalysis, analyse_records
-from seatrial_studies.section2d.modes import CROSS_AXIS, HEAVE, REPEATABILITY, jackknife_error, split_periods
+from seatrial_studies.section2d.facts import FACTS, largest_errors
+from seatrial_studies.section2d.modes import CROSS_AXIS, HEAVE, REPEATABILITY, split_periods
 from seatrial_studies.section2d.responses import (
     BEAM,
     DEPTH,
@@ -33,7 +35,8 @@ from seatrial_studies.section2d.responses import (
     SWAY_STIFFNESS,
     read_periods,
 )
-from seatrial_studies.section2d.tables import largest_errors, tables
+from seatrial_studies.study_file import read_study
+from seatrial_studies.study_page import StudyPage
 
 
 @pytest.fixture(scope="module")
@@ -42,6 +45,14 @@ def made(data_folder: Path) -> Iterator[SectionAnalysis]:
     if not folder.is_dir():
         pytest.skip("the section's records are not here")
     yield analyse_records(folder, quick=True, report_progress=None)
+
+
+def page(made: SectionAnalysis) -> StudyPage[SectionAnalysis]:
+    return StudyPage(read_study("section2d"), FACTS, made)
+
+
+def verdict(made: SectionAnalysis, start: str) -> Verdict:
+    return next(c.verdict for c in page(made).claims() if c.claim.startswith(start))
 
 
 def test_periods_held_out_between_trained_ones_are_predicted(made: SectionAnalysis) -> None:
@@ -102,9 +113,9 @@ def test_friction_in_the_guide_is_dry(made: SectionAnalysis) -> None:
     assert made.guide.exponent + 2.0 * made.guide.error < -0.5
     near = [f for f in made.guide.runs if f.run.startswith("3102")]
     assert all(7.0 < f.damping < 9.0 and f.third_harmonic_ratio == pytest.approx(1.0 / 3.0, abs=0.08) for f in near)
-    assert verdicts.rig_damping_claim(made).verdict is Verdict.REFUTED
+    assert verdict(made, "The rig damps") is Verdict.REFUTED
     linear = replace(made, guide=replace(made.guide, exponent=0.05, error=0.2))
-    assert verdicts.rig_damping_claim(linear).verdict is Verdict.CONFIRMED
+    assert verdict(linear, "The rig damps") is Verdict.CONFIRMED
 
 
 def test_dead_camera_channels_are_found_and_no_others(made: SectionAnalysis) -> None:
@@ -139,17 +150,17 @@ def test_without_a_tie_the_added_mass_is_open(made: SectionAnalysis) -> None:
 
 def test_claims_and_checks_can_come_out_the_other_way(made: SectionAnalysis) -> None:
     off = replace(made, heave=replace(made.heave, period=1.25), dead_channel_findings=())
-    assert verdicts.natural_period_claim(off.heave).verdict is Verdict.REFUTED
-    assert [c.name for c in verdicts.checks(off) if not c.holds] == [
+    assert verdict(off, "The natural period in heave") is Verdict.REFUTED
+    assert [c.name for c in page(off).checks() if not c.holds] == [
         "heave, natural period off the documented [%]",
         "runs with dead camera channels",
     ]
-    assert verdicts.common_clock_claim(replace(made, dead_channel_findings=(), clocks={})).verdict is Verdict.CONFIRMED
-    assert all(c.holds for c in verdicts.checks(made))
+    assert verdict(replace(made, dead_channel_findings=(), clocks={}), "All channels") is Verdict.CONFIRMED
+    assert all(c.holds for c in page(made).checks())
 
 
 def test_every_table_has_as_many_cells_as_its_header(made: SectionAnalysis) -> None:
-    for table in tables(made):
+    for table in page(made).tables():
         assert table.rows and all(len(row) == len(table.header) for row in table.rows), table.title
 
 

@@ -5,10 +5,10 @@ import pytest
 
 from seatrial.core.values import Record
 from seatrial.estimation.regress import Pipeline
+from seatrial_studies.controller_cost import controller_rows
 from seatrial_studies.song2025.generalisation import (
     compare_craft,
     heading_controller_costs,
-    heading_controller_table,
     heading_task,
     speed_predictions,
 )
@@ -23,7 +23,7 @@ from seatrial_studies.song2025.reproduction import (
     with_duplicates,
     with_outliers,
 )
-from seatrial_studies.song2025.tables import DECLARATIONS
+from seatrial_studies.study_file import read_study
 
 
 @pytest.fixture(scope="module")
@@ -89,9 +89,10 @@ def test_a_controller_tuned_on_the_truth_costs_least() -> None:
     costs = heading_controller_costs({"original": CORRECTED[1].craft()})
     assert costs[0].excess == pytest.approx(0.0, abs=1e-9)
     assert costs[1].excess > 0.01
-    assert len(heading_controller_table(costs).rows) == 2
+    assert len(controller_rows({"turn": costs})) == 2
 
 
 def test_every_symbol_has_a_meaning_and_every_figure_a_place() -> None:
-    assert len(DECLARATIONS.figures) == 10
-    assert all(symbol.meaning and symbol.value for symbol in DECLARATIONS.symbols)
+    declared = read_study("song2025")
+    assert len(declared.paper_figures) == 10
+    assert all(meaning and value for _, meaning, _, value in declared.symbols)
