@@ -14,7 +14,7 @@ from seatrial.control.gain_evaluation import (
     exceedance_share,
 )
 from seatrial.control.ship import DRAWS, draw_parameters, plant_as_model, stable_draws
-from seatrial.control.task import OUTPUT, Demand, TrimmedShip, TuningTask
+from seatrial.control.task import OUTPUT, SLOWEST, Demand, TrimmedShip, TuningTask
 from seatrial.core.results.tuning import (
     Component,
     Controller,
@@ -80,7 +80,7 @@ def simulate_manoeuvres(
     ship = task.trimmed_ship or plant_as_model(loop)
     drawn = draw_parameters(ship, draws, seed)
     stable = sum(drawn.stable_ships(loop, gains)), drawn.draws
-    limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
+    limits = task.actuator_limits.without_stall
     return tuple(
         _simulate_manoeuvre(one, ship, loop, name, gains, limits, drawn.ships, stable)
         for one in _programmes(task, loop, gains, task.required_demand)
@@ -90,9 +90,12 @@ def simulate_manoeuvres(
 def shortfall(task: TuningTask, loop: TransferLoop, gains: Array, *, draws: int = DRAWS) -> tuple[float, str]:
     """How far the gains (g,) are from following the task's change, to be compared, and why; 0 and nothing if they do.
 
-    Every ship drawn is to be stable; the identified one settles within 5 % and overshoots no more than allowed.
+    Every ship drawn is to be stable; the identified one settles within 5 % and overshoots no more than allowed. Both
+    have the slowest and latest actuator of the task's spread.
     """
     asked = task.required_demand
+    limits, loop = task.uncertainty.actuator.actuator_at(SLOWEST, task.actuator_limits, loop)
+    task = replace(task, constraints=replace(task.constraints, rate=limits.rate))
     stable, drawn = stable_draws(task, gains, loop, draws=draws)
     lost = drawn - stable
     try:

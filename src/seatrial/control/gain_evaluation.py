@@ -10,7 +10,7 @@ from scipy.optimize import NonlinearConstraint, minimize
 
 from seatrial.control.task import OUTPUT, Seaway, SlowDisturbance, TuningTask
 from seatrial.core.results.tuning import ControllerConstraints
-from seatrial.core.values import Array, Index
+from seatrial.core.values import Array, Index, frozen
 from seatrial.physics.loops import LoopEvaluation, LoopSignal, Objective, Performance, TransferLoop
 from seatrial.physics.loops.objective import WeightedVariance, variance
 from seatrial.physics.loops.performance import PEAKS, distinct_variances
@@ -222,15 +222,23 @@ _HUGE, _TINY, _NO_SHARE, _LARGEST_EXCESS = 1e30, 1e-300, 1e-12, 1e3
 
 def free_gain_bounds(evaluator: GainEvaluator) -> tuple[Index, GainBounds]:
     """Return the indices of the free gains and their bounds."""
-    gains = evaluator.loop.gains
-    places = np.array([i for i, p in enumerate(gains) if p.free], dtype=np.int64)
-    return places, (np.array([gains.items[i].lower for i in places]), np.array([gains.items[i].upper for i in places]))
+    return _free_gain_bounds(evaluator.loop)
+
+
+@lru_cache(maxsize=_KEPT_LOOPS)
+def _free_gain_bounds(loop: TransferLoop) -> tuple[Index, GainBounds]:
+    places = np.array([i for i, p in enumerate(loop.gains) if p.free], dtype=np.int64)
+    low, high = (frozen(np.array([getattr(p, end) for p in loop.gains.free])) for end in ("lower", "upper"))
+    return places, (low, high)
 
 
 def all_gains(evaluator: GainEvaluator, free: Array) -> Array:
     """Return all gains (n, g) of free ones (n, f); the others as the loop has them."""
-    made = np.tile(evaluator.loop.gain_values, (len(free), 1))
-    made[:, free_gain_bounds(evaluator)[0]] = free
+    places = free_gain_bounds(evaluator)[0]
+    made = np.empty((len(free), len(evaluator.loop.terms)))
+    if len(places) < made.shape[1]:
+        made[:] = evaluator.loop.gain_values
+    made[:, places] = free
     return made
 
 

@@ -304,7 +304,7 @@ def linearise(ship: TrimmedShip) -> LinearSystem:
 
 
 def _mean_matrices(one: LinearSystem, other: LinearSystem) -> LinearSystem:
-    return LinearSystem(*(0.5 * (getattr(one, k) + getattr(other, k)) for k in ("A", "B", "C", "D")))
+    return LinearSystem(*(0.5 * (getattr(one, name) + getattr(other, name)) for name in ("A", "B", "C", "D")))
 
 
 def _one_sided_matrices(ship: TrimmedShip) -> tuple[LinearSystem, LinearSystem]:
@@ -474,10 +474,10 @@ def stable_draws(
 
 def _plant_blocks(ship: TrimmedShip) -> tuple[Block, ...]:
     sides = _one_sided_matrices(ship)
-    matrices = (_mean_matrices(*sides), *sides)
-    blocks = [_transfer_function(ship, one, ship.actuator) for one in matrices]
-    alike = all(side.den == blocks[0].den and side.num == blocks[0].num for side in blocks[1:])
-    return (blocks[0],) if alike else tuple(blocks)
+    one, other = (_transfer_function(ship, side, ship.actuator) for side in sides)
+    if one == other:
+        return (one,)
+    return _transfer_function(ship, _mean_matrices(*sides), ship.actuator), one, other
 
 
 @lru_cache(maxsize=_KEPT)

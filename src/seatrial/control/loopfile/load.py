@@ -39,7 +39,6 @@ from seatrial.control.loopfile.schema import (
 from seatrial.control.station.tune_station import refuse_impossible_station
 from seatrial.control.task import (
     Demand,
-    PlantUncertainty,
     Seaway,
     SimulationSettings,
     SlowDisturbance,
@@ -66,6 +65,7 @@ _DELAY_OVER_DEAD_TIME = 1.0  # least delay margin beyond the declared dead time,
 _DEAD_TIME_SAMPLES = 25  # samples of the dead time at most where no sample time is declared; chosen
 _ACCEPTANCE_LENGTHS = 2.0  # of the circle of acceptance, in lengths of the ship: Fossen 2011, section 10.3
 _SHARPEST_CORNER = math.radians(120.0)  # of a track; chosen
+_LARGEST_SHARE = 0.9  # of a spread that a log leaves: an actuator of no rate is none; chosen
 _MOST_STEPS = 1e7  # steps over all seeds; guards against a wrong unit
 
 
@@ -126,16 +126,18 @@ def _with_logged_actuator(file: LoopFile, plant: LoopPlant, home: Path) -> tuple
     except InputError as error:
         raise InputError(f"actuator.log: {error}") from None
     fitted: dict[str, object] = {}
+    shares: dict[str, float] = {}
     if table.rate is None and math.isfinite(response.rate):
         fitted["rate"] = Amount(value=response.rate)
+        shares["rate"] = min(response.rate_error / response.rate, _LARGEST_SHARE)
     if table.dead_time is None and response.dead_time > 0.0:
         fitted["dead_time"] = Amount(value=response.dead_time)
+        shares["dead_time"] = min(response.dead_time_error / response.dead_time, _LARGEST_SHARE)
     if not table.servo and file.controller.kind != "yu2014":
         fitted["servo"] = (BlockTable(lag=Amount(value=response.lag), name="lag of the actuator", source=table.log),)
-    uncertainty = file.uncertainty
+    uncertainty = replace(file.uncertainty, actuator=replace(file.uncertainty.actuator, **shares))
     if uncertainty.dead_time is None and "dead_time" in fitted:
-        latest = Amount(value=response.dead_time + response.dead_time_error)
-        uncertainty = uncertainty.model_copy(update={"dead_time": latest})
+        uncertainty = replace(uncertainty, dead_time=response.dead_time + response.dead_time_error)
     described = f"{plant.description}; {response.sentence(plant.actuator)}"
     return (
         file.model_copy(update={"actuator": table.model_copy(update=fitted), "uncertainty": uncertainty}),
@@ -193,7 +195,7 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
         genetic=file.genetic,
         drive=drive,
         surface=surface,
-        uncertainty=_uncertainty(file),
+        uncertainty=file.uncertainty,
         track=None if file.track is None else _track(file.track, plant, demand),
         station=None if file.station is None else _station(file.station, file, plant),
         sample_s=None
@@ -254,15 +256,6 @@ def _constraints(file: LoopFile, plant: LoopPlant) -> ControllerConstraints:
 def _dead_time(table: ActuatorTable) -> float:
     """Return the declared dead time [s]; zero without one."""
     return 0.0 if table.dead_time is None else positive_value(table.dead_time, "s", "actuator.dead_time")
-
-
-def _uncertainty(file: LoopFile) -> PlantUncertainty:
-    """Return the box; without a dead time of its own up to that which the actuator declares."""
-    table = file.uncertainty
-    dead_time = _dead_time(file.actuator)
-    if table.dead_time is not None:
-        dead_time = positive_value(table.dead_time, "s", "uncertainty.dead_time")
-    return PlantUncertainty(table.gain, table.time, dead_time)
 
 
 def _drive(table: ActuatorTable) -> ActuatorDrive | None:

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from seatrial.control.task import GeneticTuning
+from seatrial.control.task import GeneticTuning, PlantUncertainty
 from seatrial.core.values import NOTATION, InputError, si_unit
 from seatrial.data.trial.amounts import (
     Amount,
@@ -440,14 +440,6 @@ class StationTable(StrictTable):
         return self
 
 
-class UncertaintyTable(StrictTable):
-    """`[uncertainty]`: shares by which the plant's gain and time constants may differ, dead time."""
-
-    gain: Annotated[float, Field(ge=0, lt=1)] = 0.2  # as in `PlantUncertainty`
-    time: Annotated[float, Field(ge=0, lt=1)] = 0.1  # as in `PlantUncertainty`
-    dead_time: Seconds | None = None
-
-
 class LoopFile(StrictTable):
     """The whole file."""
 
@@ -473,7 +465,7 @@ class LoopFile(StrictTable):
     demand: DemandTable | None = None
     track: TrackTable | None = None
     station: StationTable | None = None
-    uncertainty: UncertaintyTable = UncertaintyTable()
+    uncertainty: PlantUncertainty = PlantUncertainty()
     genetic: GeneticTuning = GeneticTuning()
 
 

@@ -257,7 +257,7 @@ def tune_track(
     best = _least_distance(evaluator, largest_integral_gain(task, demand))
     if not evaluator.evaluate(best[None]).is_feasible[0]:
         refuse_infeasible(evaluator, seed)
-    rate, limits = reference_rate(task, loop, task.required_demand), _limits(task)
+    rate, limits = reference_rate(task, loop, task.required_demand), task.actuator_limits.without_stall
     best = _settling(best, lambda gains: CornerTrial(heading, line_of_sight(gains, rate), limits, demand, task.U))
     KP, KI = best.tolist()
     guidance = line_of_sight((KP, KI), rate)
@@ -278,10 +278,6 @@ def tune_track(
         disturbances=tuple(trial.simulate(disturbance, seed) for disturbance in outer.disturbances),
         corner=corner.respond(closed, draws, seed),
     )
-
-
-def _limits(task: TuningTask) -> ActuatorLimits:
-    return ActuatorLimits(task.constraints.limit, task.constraints.rate)
 
 
 def _settling(gains: Array, trial: Callable[[tuple[float, float]], CornerTrial]) -> Array:

@@ -23,7 +23,7 @@ from seatrial.core.values import Array, InputError, Record, frozen
 from seatrial.core.values.notation import channel_unit
 from seatrial.physics.loops import TransferLoop, in_series
 from seatrial.physics.loops.discrete import difference_equation
-from seatrial.physics.simulate.closed_loop import ActuatorLimits, simulation_step, steps_a_sample
+from seatrial.physics.simulate.closed_loop import simulation_step, steps_a_sample
 
 # Changes of an ordered output in a log, and what weather did to the ship while the order stood still.
 
@@ -364,7 +364,7 @@ def _answers(
     else:
         sampled, fed = np.interp(sample_time, order_time, change.order), np.zeros(len(sample_time))
     level, fed = (np.repeat(signal, every)[: len(time)] for signal in (sampled, fed))
-    limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
+    limits = task.actuator_limits.without_stall
     simulated = [simulate_tracking(ship, loop, gains, limits, dt, level, fed) for ship in ships]
     return [
         _Answer(np.interp(order_time, time, output - output[0]), np.interp(order_time, time, moved - moved[0]))

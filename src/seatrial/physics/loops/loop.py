@@ -76,7 +76,7 @@ def in_series(name: str, blocks: Iterable[Block]) -> Block:
     """Return the product of blocks; nothing cancels."""
     num, den = np.ones(1), np.ones(1)
     for block in blocks:
-        num, den = np.polymul(num, block.num), np.polymul(den, block.den)
+        num, den = np.convolve(num, block.num), np.convolve(den, block.den)
     return Block(name, tuple(num), tuple(den))
 
 
@@ -204,7 +204,7 @@ def _held(sides: tuple[tuple[tuple[float, ...], tuple[float, ...]], ...], sampli
     response = c @ np.linalg.solve(at * np.eye(size) - E, (1.0 - at) * B) + d if size else d
     numerator = numerator * (response / (np.polyval(numerator, at) / np.polyval(denominator, at))).real
     for _ in range(whole):
-        numerator, denominator = np.polymul(numerator, [-1.0, 1.0]), np.polymul(denominator, [1.0, 1.0])
+        numerator, denominator = np.convolve(numerator, [-1.0, 1.0]), np.convolve(denominator, [1.0, 1.0])
     num, den = (_in_seconds(np.asarray(side, dtype=np.float64), T) for side in (numerator, denominator))
     scale = den[0] if den[0] else 1.0
     return Block("held", tuple((num / scale).tolist()), tuple((den / scale).tolist()))
@@ -399,11 +399,11 @@ class TransferLoop:
         The closed loop has the characteristic polynomial d + sum gain_i n_i. Nothing cancels.
         """
         dens = list(dict.fromkeys(term.block.den for term in self.terms))
-        common = reduce(np.polymul, dens, np.array(self.chain.den))
+        common = reduce(np.convolve, dens, np.array(self.chain.den))
         numerators = np.zeros((len(self.terms), len(common)))
         for row, term in zip(numerators, self.terms, strict=True):
             others = [den for den in dens if den != term.block.den]
-            made = np.atleast_1d(reduce(np.polymul, [term.block.num, *others], np.array(self.chain.num)))
+            made = np.atleast_1d(reduce(np.convolve, [term.block.num, *others], np.array(self.chain.num)))
             row[len(row) - len(made) :] = made
         return frozen(common), frozen(numerators)
 

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property, reduce
+from functools import cached_property, lru_cache, reduce
 
 import numpy as np
 
@@ -106,6 +106,7 @@ def _add_term(
 _WHOLE = 1e-6  # of a sample: a step that divides it
 _TRIED = 40  # numbers of steps a sample that are tried, for one in which the dead time is whole; chosen
 _NEAR = 0.02  # of a step: a dead time that counts as whole; chosen
+_KEPT = 64  # sensors and servos in steps kept in memory, the same for all gains; chosen
 _NOISE_STREAM = 12  # of random numbers, apart from those of disturbances of the same seed; chosen
 _FINEST = 0.2  # of the dead time, the longest step where there is one; chosen
 
@@ -184,6 +185,7 @@ def _block(block: Block, T: float, gain: float, holds: float) -> Array:
     return np.concatenate([[n, gain, holds, 0.0], b, a, np.zeros(n)])
 
 
+@lru_cache(maxsize=_KEPT)
 def _sensor(block: Block, dt: float) -> tuple[Array, int]:
     """Return a sensor for an input that runs straight over each step (Franklin, Powell & Workman 1998, section 6.3)."""
     A, b, c, d = controllable_form(block)
@@ -192,6 +194,7 @@ def _sensor(block: Block, dt: float) -> tuple[Array, int]:
     return np.concatenate([E.T.ravel(), before, after, c, [d], np.zeros(2 * n + 1)]), n
 
 
+@lru_cache(maxsize=_KEPT)
 def _servo(block: Block, dt: float) -> tuple[Array, int]:
     """Return a servo for an input that is held over each step."""
     A, b, c, d = controllable_form(block)
