@@ -4,14 +4,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import islice
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.control.task import TrimmedShip, TuningTask
 from seatrial.core.equations import Model
-from seatrial.core.equations.model import RUDDER, stored_model
+from seatrial.core.equations.model import RUDDER
 from seatrial.core.values import NOTATION, Array, InputError, Parameter, Parameters, frozen, spelling_hint
 from seatrial.core.values.record import froude_factor
 from seatrial.data.folder.model_file import ModelFile
@@ -21,6 +20,7 @@ from seatrial.numerics.kernels.integrate import evaluate_tangent
 from seatrial.numerics.kernels.loop import is_hurwitz
 from seatrial.physics.hydro.free_roll import equivalent_damping
 from seatrial.physics.loops import Block, TransferLoop
+from seatrial.physics.loops.loop_states import plant_model
 from seatrial.physics.models.thrust_orders import YAW
 from seatrial.physics.simulate.linear import LinearSystem
 from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
@@ -182,34 +182,13 @@ def jacobian_at(model: Model, states: Array, inputs: Array, *, of_outputs: bool)
 
 
 def plant_as_model(loop: TransferLoop) -> TrimmedShip:
-    """The plant in observable form (Kailath 1980, Linear Systems, section 2.1), at rest: its first state is the output.
+    """The plant as a linear model, at rest: its first state is the output.
 
     Raises:
         InputError: the plant answers at once.
     """
-    plant = loop.plant
-    if len(plant.num) == len(plant.den):
-        raise InputError(f"the plant of loop '{loop.name}' answers at once; give the lag that every real one has")
-    den, n = np.array(plant.den) / plant.den[0], plant.order
-    num = np.concatenate([np.zeros(n - len(plant.num)), np.array(plant.num) / plant.den[0]])
-    key = ("plant as model", loop.actuator, loop.output, plant.source, den.tolist(), num.tolist())
-    model = stored_model(key, lambda: _written(loop, den, num), (Path(__file__).parent,))
-    return TrimmedShip(model, np.zeros(n), np.zeros(1), loop.actuator, loop.output)
-
-
-def _written(loop: TransferLoop, den: Array, num: Array) -> Model:
-    import sympy as sp
-
-    from seatrial.core.equations import Sheet
-
-    n = loop.plant.order
-    sheet = Sheet(f"{loop.actuator} to {loop.output}", loop.plant.source or "as given", "a plant, linear")
-    states = sheet.states(" ".join([loop.output, *(f"{loop.output}_{i}" for i in range(1, n))]))
-    actuator = sheet.input(loop.actuator)
-    for i, state in enumerate(states):
-        following = states[i + 1] if i + 1 < n else sp.Integer(0)
-        sheet.rate(state, following - float(den[i + 1]) * states[0] + float(num[i]) * actuator, "observable form")
-    return sheet.model()
+    model = plant_model(replace(loop, disturbance=loop.plant))
+    return TrimmedShip(model, np.zeros(len(model.states)), np.zeros(len(model.inputs)), loop.actuator, loop.output)
 
 
 # From an identified model to the plant of a loop: the trim, and the transfer functions about it.

@@ -9,13 +9,20 @@ from functools import lru_cache
 from typing import Annotated
 
 import numpy as np
-from pydantic import Field
+from pydantic import AfterValidator, BeforeValidator, Field
 from pydantic.dataclasses import dataclass
 
 from seatrial.core.equations import Model
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import Array, InputError, display_unit
-from seatrial.data.trial.amounts import STRICT_FIELDS, InSi, raises_input_error
+from seatrial.data.trial.amounts import (
+    STRICT_FIELDS,
+    InSi,
+    PositiveLength,
+    PositiveSpeed,
+    Quantities,
+    raises_input_error,
+)
 from seatrial.numerics.optimise import GeneticSettings, Normaliser
 from seatrial.physics.loops import (
     WAVE_SLOPE,
@@ -108,6 +115,7 @@ OUTPUT = variance("output", "rad^2", LoopSignal.OUTPUT)
 _KEPT_LOOPS = 64  # with other dead times, kept in memory; chosen
 _KEPT_SEAS = 256  # whose quadrature is kept: those of a schedule and between, of fronts on the same plant; chosen
 _sea_disturbance = lru_cache(maxsize=_KEPT_SEAS)(sea_disturbance)
+_ROUNDING = 1e-9  # rad by which a heading may lie outside
 _SLOWEST, _FASTEST = 1e-3, 1e2  # frequencies of a slow disturbance over its bandwidth; chosen
 _BEYOND = 30.0  # its highest frequency over the plant's fastest pole; chosen
 
@@ -214,17 +222,39 @@ class Effectiveness(Enum):
     SPEED_SQUARED = "U^2"
 
 
-@dataclasses.dataclass(frozen=True)
+def _amounts(value: object) -> object:
+    """Return a list of amounts for a table of values with one unit; anything else as it is."""
+    if not (isinstance(value, dict) and {"values"} <= set(value) <= {"values", "unit"}):
+        return value
+    return [{"value": number, "unit": value.get("unit")} for number in value["values"]]
+
+
+def _heading(value: float) -> float:
+    """Return a heading to the waves, 0 following to pi head [rad]."""
+    if not -_ROUNDING <= value <= math.pi + _ROUNDING:
+        raise InputError(
+            f"{value:g} rad is no heading to the waves from 0 (following) to half a turn (head); write it with its "
+            f'unit, such as {{ value = {value:g}, unit = "deg" }}'
+        )
+    return min(max(value, 0.0), math.pi)
+
+
+Heading = Annotated[float, InSi("rad"), AfterValidator(_heading)]
+_OneOrMore = Field(min_length=1), BeforeValidator(_amounts, json_schema_input_type=tuple[float, ...] | Quantities)
+
+
+@raises_input_error
+@dataclass(frozen=True, config=STRICT_FIELDS)
 class ScheduleGrid:
-    """Conditions of a schedule: U [m/s], beta [rad], significant height [m]; every combination is tuned.
+    """`[schedule]`: speeds U [m/s], headings beta [rad], significant heights [m]; every combination gets its own gains.
 
     largest_step: of a gain between neighbouring conditions, as a share of the larger one.
     """
 
-    speeds: tuple[float, ...]
-    headings: tuple[float, ...]
-    heights: tuple[float, ...]
-    largest_step: float = 0.3  # chosen
+    speeds: Annotated[tuple[PositiveSpeed, ...], *_OneOrMore]
+    headings: Annotated[tuple[Heading, ...], *_OneOrMore]
+    heights: Annotated[tuple[PositiveLength, ...], *_OneOrMore]
+    largest_step: Annotated[float, Field(gt=0, lt=1)] = 0.3  # chosen
 
 
 @dataclasses.dataclass(frozen=True)

@@ -170,7 +170,7 @@ def test_limits_that_no_bandwidth_keeps_are_refused_with_what_is_possible() -> N
             "station.gust: 'm/s' is no unit of what is",
         ),
         ([("current = 0.25", "current = 3")], r"at times 3.08 m/s; the thrusters hold 2\.2"),
-        ([("current = 0.25", "current = -1")], "station.current = -1 is not positive"),
+        ([("current = 0.25", "current = -1")], "station.current: -1 is not positive"),
         ([('model = "model.toml"', 'model = "model.toml"\noutput = "u"\nspeed = 1.0')], "beside its heading loop"),
     ],
 )
