@@ -357,9 +357,14 @@ def _transfer_function(ship: TrimmedShip, linear: LinearSystem, name: str) -> Bl
     return _response(ship, linear, sign * linear.B[:, column], sign * float(linear.D[column]), name)
 
 
-def _response(ship: TrimmedShip, linear: LinearSystem, b: Array, feed: float, name: str) -> Block:
+def _minimal(linear: LinearSystem, b: Array) -> tuple[Array, Array, Array]:
+    """Return A, b, c of the states that follow an input b (nx,) and show in the output."""
     kept = _linked_states(linear.A, _is_significant(b)) & _linked_states(linear.A.T, _is_significant(linear.C))
-    A, b, c = linear.A[np.ix_(kept, kept)], b[kept], linear.C[kept]
+    return linear.A[np.ix_(kept, kept)], b[kept], linear.C[kept]
+
+
+def _response(ship: TrimmedShip, linear: LinearSystem, b: Array, feed: float, name: str) -> Block:
+    A, b, c = _minimal(linear, b)
     den = _characteristic_polynomial(A)
     num, M = [feed], np.eye(len(A))
     for k in range(len(A)):
@@ -452,11 +457,11 @@ def stable_draws(
 
 
 def _plant_blocks(ship: TrimmedShip) -> tuple[Block, ...]:
-    sides = _one_sided_matrices(ship)
-    one, other = (_transfer_function(ship, side, ship.actuator) for side in sides)
-    if one == other:
-        return (one,)
-    return _transfer_function(ship, _mean_matrices(*sides), ship.actuator), one, other
+    sides, column = _one_sided_matrices(ship), ship.model.input_names.index(ship.actuator)
+    parts = [_minimal(side, side.B[:, column]) for side in sides]
+    alike = all(np.array_equal(one, other) for one, other in zip(*parts, strict=True))
+    matrices = sides[:1] if alike else (_mean_matrices(*sides), *sides)
+    return tuple(_transfer_function(ship, linear, ship.actuator) for linear in matrices)
 
 
 @lru_cache(maxsize=_KEPT)

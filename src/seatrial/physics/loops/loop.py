@@ -232,6 +232,9 @@ def _split(sampling: Sampling) -> tuple[int, float]:
 
 def _stepped(A: Array, b: Array, T: float, late: float) -> tuple[Array, Array, Array]:
     """Return exp(A T), and what the order before and the one now do in a step: the former acts for `late` seconds."""
+    if not late:
+        stepped, now = held_step(A, b, T)
+        return stepped, np.zeros(len(b)), now
     first, began = held_step(A, b, late)
     second, now = held_step(A, b, T - late)
     return second @ first, second @ began, now
