@@ -458,7 +458,7 @@ def stable_draws(
 
 def _plant_blocks(ship: TrimmedShip) -> tuple[Block, ...]:
     sides, column = _one_sided_matrices(ship), ship.model.input_names.index(ship.actuator)
-    parts = [_minimal(side, side.B[:, column]) for side in sides]
+    parts = [(*_minimal(side, side.B[:, column]), side.D[column]) for side in sides]
     alike = all(np.array_equal(one, other) for one, other in zip(*parts, strict=True))
     matrices = sides[:1] if alike else (_mean_matrices(*sides), *sides)
     return tuple(_transfer_function(ship, linear, ship.actuator) for linear in matrices)
