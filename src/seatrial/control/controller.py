@@ -38,7 +38,14 @@ from seatrial.physics.loops import Block, Sampling, TransferLoop, margins, rever
 from seatrial.physics.loops.autopilot import START, FeedForward, acceleration_feed_forward, working_frequency
 from seatrial.physics.loops.discrete import default_sample_time, difference_equation, holding_terms
 from seatrial.physics.loops.performance import frequency_band
-from seatrial.physics.simulate.closed_loop import REFERENCE, ActuatorLimits, ClosedLoop, simulation_step, steps_a_sample
+from seatrial.physics.simulate.closed_loop import (
+    REFERENCE,
+    ActuatorLimits,
+    ClosedLoop,
+    fastest_motion,
+    simulation_step,
+    steps_a_sample,
+)
 
 # A demand carried out: a change and a zigzag by the nonlinear model within its limits, and by ships the fit allows.
 
@@ -48,7 +55,6 @@ _SHOWN_DRAWS, _SAMPLES = 20, 1000  # sampled ships and samples in time that a fi
 _FEWEST_STEPS, _MOST_STEPS, _STEP_SHARE = 1000, 20_000, 0.2
 _SETTLING_BAND = 0.05  # share of the change: the usual 5 % settling band
 _LEGS = 4  # of the zigzag: two to either side; chosen
-_SLOWEST_POLE = 1e-6  # rad/s, taken for a loop without states
 _CHANGE_NAMES = {"psi": "course change", "u": "speed change"}
 
 
@@ -220,9 +226,7 @@ def _clock(loop: TransferLoop, demand: Demand) -> tuple[float, int]:
 
     Short for everything that moves; one in continuous time is sampled at every step.
     """
-    moving = np.abs(loop.closed_loop_poles) if loop.sampling is None else np.abs(loop.plant.poles)
-    fastest = float(moving.max(initial=_SLOWEST_POLE))
-    count = int(np.clip(math.ceil(demand.duration * fastest / _STEP_SHARE), _FEWEST_STEPS, _MOST_STEPS))
+    count = int(np.clip(math.ceil(demand.duration * fastest_motion(loop) / _STEP_SHARE), _FEWEST_STEPS, _MOST_STEPS))
     dt = simulation_step(loop.sampling, demand.duration / count)
     return dt, 1 if loop.sampling is None else steps_a_sample(loop.sampling, dt)
 

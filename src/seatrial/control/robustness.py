@@ -94,12 +94,7 @@ def slowed_plant(plant: Block, factor: float) -> Block:
     P(factor s), times the factor for each integrator: K / (s (T s + 1)) becomes K / (s (factor T s + 1)).
     """
     integrators = next(i for i, c in enumerate(reversed(plant.den)) if c)
-
-    def stretched(coefficients: tuple[float, ...]) -> tuple[float, ...]:
-        top = len(coefficients) - 1
-        return tuple(c * factor ** (top - i) for i, c in enumerate(coefficients))
-
-    return replace(plant, num=stretched(plant.num), den=stretched(plant.den)).scaled(factor**integrators)
+    return plant.stretched(factor).scaled(factor**integrators)
 
 
 def _peak(open_loop: Complex) -> float:

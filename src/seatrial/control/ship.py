@@ -424,21 +424,28 @@ class ParameterDraws:
         return tuple(all(list(islice(stable, len(plants)))) for plants in self.plants)
 
 
+def drawn_values(model: Model, covariance: Array, draws: int, seed: int) -> list[dict[str, float]]:
+    """Return free parameters by name, sampled from their Gaussian; none without a covariance. Nothing is truncated."""
+    if not covariance.size:
+        return []
+    free = model.parameters.free
+    spread = np.random.default_rng(seed).standard_normal((draws, len(free))) @ square_root(covariance).T
+    points = np.array([p.value for p in free]) + spread
+    return [dict(zip(model.parameters.free_names, point, strict=True)) for point in points.tolist()]
+
+
 @lru_cache(maxsize=_KEPT)
 def draw_parameters(ship: TrimmedShip, draws: int = DRAWS, seed: int = SEED) -> ParameterDraws:
     """Return ships sampled from the Gaussian of the free parameters; none where the fit has no covariance.
 
-    The same seed gives the same ships. Nothing is truncated.
+    The same seed gives the same ships.
     """
     if not ship.covariance.size or not draws:
         return ParameterDraws(0, (), ())
-    free = ship.model.parameters.free
-    centre: Array = np.array([p.value for p in free])
-    points = centre + np.random.default_rng(seed).standard_normal((draws, len(free))) @ square_root(ship.covariance).T
     ships, plants = [], []
-    for point in points:
+    for values in drawn_values(ship.model, ship.covariance, draws, seed):
         try:
-            sampled = with_parameters(ship, dict(zip([p.name for p in free], point.tolist(), strict=True)))
+            sampled = with_parameters(ship, values)
             plants.append(_plant_blocks(sampled))
             ships.append(sampled)
         except InputError:

@@ -165,21 +165,11 @@ def plant_at_speed(
             f"schedule.speeds: how {plant.output} answers {plant.actuator} is known at {plant.U:.4g} m/s alone; give "
             "this speed, or a model with surge"
         )
-    response = _in_time(plant.response, plant.U / U)
+    response = plant.response.stretched(plant.U / U)
     return replace(
         plant, response=response, disturbance=response, U=U, trimmed_ship=None,
         description=f"{plant.description}, carried to {U:.4g} m/s by similarity",
     )  # fmt: skip
-
-
-def _in_time(block: Block, factor: float) -> Block:
-    """Return P(factor s)."""
-
-    def stretched(coefficients: tuple[float, ...]) -> tuple[float, ...]:
-        top = len(coefficients) - 1
-        return tuple(c * factor ** (top - i) for i, c in enumerate(coefficients))
-
-    return replace(block, num=stretched(block.num), den=stretched(block.den))
 
 
 def yaw_acceleration_path(plant: LoopPlant) -> Block:

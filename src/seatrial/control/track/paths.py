@@ -13,7 +13,7 @@ from seatrial.core.results.tuning import CornerResponse
 from seatrial.core.values import Array, Channel, DivergedError, InputError, Provenance, Record, RecordKind, frozen
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import Block, TransferLoop
-from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop, simulation_step
+from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop, fastest_motion, simulation_step
 from seatrial.physics.simulate.craft_control import LineOfSight, PlannedTrack, TrackRun, follow_track
 
 # How rudder, heading order, waves and current reach heading and track of a craft with a heading loop, linearised.
@@ -187,8 +187,7 @@ class CornerTrial:
     @property
     def _step(self) -> float:
         loop = self.heading.loop
-        moving = loop.closed_loop_poles if loop.sampling is None else loop.plant.poles
-        longest = max(_STEP_SHARE / float(np.abs(moving).max()), (_BEFORE + _AFTER) * self._time / _MOST_STEPS)
+        longest = max(_STEP_SHARE / fastest_motion(loop), (_BEFORE + _AFTER) * self._time / _MOST_STEPS)
         return simulation_step(loop.sampling, longest)
 
     def _run(self, ship: TrimmedShip, track: PlannedTrack) -> TrackRun:

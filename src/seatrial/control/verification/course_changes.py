@@ -21,7 +21,7 @@ from seatrial.core.results.verification import VerifiedChange, VerifiedQuantity
 from seatrial.core.values import Array, InputError, Record, frozen
 from seatrial.core.values.notation import channel_unit
 from seatrial.physics.loops import Block, TransferLoop
-from seatrial.physics.simulate.closed_loop import simulation_step, steps_a_sample
+from seatrial.physics.simulate.closed_loop import fastest_motion, simulation_step, steps_a_sample
 
 # Changes of an ordered output in a log, and what weather did to the ship while the order stood still.
 
@@ -245,8 +245,7 @@ class _OrderedRun:
     def of_change(cls, task: TuningTask, loop: TransferLoop, change: LoggedChange) -> "_OrderedRun":
         """Return the change as it was ordered, through the reference filter where the order jumped."""
         loop, demand = _without_noise(loop), task.required_demand
-        moving = loop.closed_loop_poles if loop.sampling is None else loop.plant.poles
-        dt = simulation_step(loop.sampling, min(change.dt, _STEP_SHARE / float(np.abs(moving).max())))
+        dt = simulation_step(loop.sampling, min(change.dt, _STEP_SHARE / fastest_motion(loop)))
         every = 1 if loop.sampling is None else steps_a_sample(loop.sampling, dt)
         time = dt * np.arange(math.ceil(change.time[-1] / dt) + 1)
         sample_time = time[::every]

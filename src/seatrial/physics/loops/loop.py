@@ -71,6 +71,13 @@ class Block:
         """Return the block times a number."""
         return Block(self.name, tuple(factor * c for c in self.num), self.den, self.source)
 
+    def stretched(self, factor: float) -> "Block":
+        """Return P(factor s): all time constants times the factor."""
+        num, den = (
+            tuple(c * factor ** (len(side) - 1 - i) for i, c in enumerate(side)) for side in (self.num, self.den)
+        )
+        return Block(self.name, num, den, self.source)
+
 
 def in_series(name: str, blocks: Iterable[Block]) -> Block:
     """Return the product of blocks; nothing cancels."""

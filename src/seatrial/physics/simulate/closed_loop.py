@@ -107,8 +107,15 @@ _WHOLE = 1e-6  # of a sample: a step that divides it
 _TRIED = 40  # numbers of steps a sample that are tried, for one in which the dead time is whole; chosen
 _NEAR = 0.02  # of a step: a dead time that counts as whole; chosen
 _KEPT = 64  # sensors and servos in steps kept in memory, the same for all gains; chosen
+_SLOWEST_POLE = 1e-6  # rad/s, taken for a loop without states
 _NOISE_STREAM = 12  # of random numbers, apart from those of disturbances of the same seed; chosen
 _FINEST = 0.2  # of the dead time, the longest step where there is one; chosen
+
+
+def fastest_motion(loop: TransferLoop) -> float:
+    """Return the fastest pole [rad/s] that steps of a simulation follow: of the loop, where it samples of the plant."""
+    poles = loop.closed_loop_poles if loop.sampling is None else loop.plant.poles
+    return float(np.abs(poles).max(initial=_SLOWEST_POLE))
 
 
 def simulation_step(sampling: Sampling | None, longest: float) -> float:
