@@ -24,14 +24,9 @@ from seatrial.core.results.tuning import (
     ReferenceFilter,
 )
 from seatrial.core.values import (
-    NOTATION,
     Array,
-    Channel,
     DivergedError,
     InputError,
-    Provenance,
-    Record,
-    RecordKind,
     frozen,
 )
 from seatrial.physics.loops import Block, Sampling, TransferLoop, margins, reversals_per_hour
@@ -46,6 +41,7 @@ from seatrial.physics.simulate.closed_loop import (
     simulation_step,
     steps_a_sample,
 )
+from seatrial.physics.simulate.replay import series_record
 
 # A demand carried out: a change and a zigzag by the nonlinear model within its limits, and by ships the fit allows.
 
@@ -273,7 +269,13 @@ def _simulate_manoeuvre(
     return ManoeuvreResponse(
         name=programme.name,
         controller=controller,
-        record=_record(f"{programme.name}, {controller}", programme.dt * every, series, loop, every),
+        record=series_record(
+            f"{programme.name}, {controller}",
+            programme.dt * every,
+            {n: values[::every] for n, values in series.items()},
+            f"loop '{loop.name}' following a demand",
+            dict.fromkeys((REFERENCE, DEMAND), loop.output),
+        ),
         output=loop.output,
         overshoot=relative_overshoot(output - trim, programme.demand, programme.step_samples),
         settling=settling_time(output - trim, programme.demand, programme.step_samples, programme.dt),
@@ -298,17 +300,6 @@ def _output_about_trim(
         return answer[0] - _trim(ship)
     except InputError:
         return None
-
-
-def _record(name: str, dt: float, series: dict[str, Array], loop: TransferLoop, every: int) -> Record:
-    channels = {}
-    for symbol, values in series.items():
-        like = loop.output if symbol in (REFERENCE, DEMAND) else symbol
-        some = frozen(np.ascontiguousarray(values[::every]))
-        channels[symbol] = Channel.from_notation(like, some) if like in NOTATION else Channel(some, "1", "none", "none")
-    count = len(next(iter(channels.values())).values)
-    said = Provenance(f"loop '{loop.name}' following a demand")
-    return Record(name, frozen(dt * np.arange(count)), channels, RecordKind.SIMULATED, provenance=said)
 
 
 # One set of gains in words a control engineer knows.

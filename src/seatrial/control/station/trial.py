@@ -19,13 +19,14 @@ from seatrial.control.station.craft import StationCraft, inverse_rows
 from seatrial.control.station.station_loop import FILTER_SHARE, INTEGRAL_SHARE, StationLoop, station_point
 from seatrial.control.task import Seaway
 from seatrial.core.results.station import StationTrial
-from seatrial.core.values import Array, Channel, DivergedError, InputError, Provenance, Record, RecordKind, frozen
+from seatrial.core.values import Array, DivergedError, InputError, Record
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import HullFactor, YawAcceleration
 from seatrial.physics.loops.loop import Sampling
 from seatrial.physics.models.thruster_layout import MIN_LAG
 from seatrial.physics.simulate.craft_control import StationController, StationRun, ThrusterOrders, keep_station
+from seatrial.physics.simulate.replay import series_record
 
 # What drives a craft off its station: water that moves and forces, as spectra for the loop and series in time.
 
@@ -270,14 +271,10 @@ class StationSimulator:
         first = self._first(run)
         end = min(len(run.north), first + round(_KEPT_S / run.dt))
         every = max(1, (end - first) // _KEPT_SAMPLES)
-        series = {"x0": run.north, "y0": run.east, "psi": run.heading}
-        channels = {
-            name: Channel.from_notation(name, frozen(np.ascontiguousarray(values[first:end:every])))
-            for name, values in series.items()
-        }
-        time = frozen(run.dt * every * np.arange(len(run.north[first:end:every])))
+        rows = slice(first, end, every)
+        series = {"x0": run.north[rows], "y0": run.east[rows], "psi": run.heading[rows]}
         source = f"station kept in a current from {math.degrees(direction):.0f} deg off the bow"
-        return Record("station", time, channels, RecordKind.SIMULATED, provenance=Provenance(source))
+        return series_record("station", run.dt * every, series, source)
 
 
 def sampled_controller(loop: StationLoop, sampling: Sampling) -> StationController:
