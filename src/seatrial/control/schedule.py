@@ -319,9 +319,10 @@ def schedule(
     there = task.at_speed or (lambda _: task)
     starts = [there(U).loop.gain_values for U in grid.speeds]
     samples = np.concatenate([spread_gains(conditions[0].evaluator, seed), starts, *([g] for g in baselines.values())])
-    alone = []
+    alone: list[Array] = []
     for i, condition in enumerate(conditions):
-        alone.append(_own_gains(condition.evaluator, samples))
+        near = [alone[i - step] for step in (1, len(grid.headings)) if i >= step]
+        alone.append(_own_gains(condition.evaluator, samples, near))
         report_progress(f"schedule: {i + 1} of {len(conditions)} conditions")
     best = np.array(alone)
     compared = {name: np.tile(gains, (len(conditions), 1)) for name, gains in baselines.items()}
@@ -344,12 +345,13 @@ def schedule(
     return Schedule(points, tuple(trades), _check_between(task, grid, points))
 
 
-def _own_gains(evaluator: GainEvaluator, samples: Array) -> Array:
+def _own_gains(evaluator: GainEvaluator, samples: Array, near: Sequence[Array]) -> Array:
     """Return the gains of a condition alone (g,): of the least output, and where a demand is followed, that follow it.
 
-    The actuator's rate is lowered until the demand is kept; where it never is, the gains that come nearest.
+    The actuator's rate is lowered until the demand is kept; where it never is, the gains that come nearest. near: those
+    of neighbouring conditions, which are followed to this one.
     """
-    best = least_output_gains(evaluator, samples)
+    best = least_output_gains(evaluator, samples, near)
     if evaluator.task.demand is None:
         return best
     used = float(evaluator.evaluate(best[None]).variances[0, :, 2].max())
