@@ -193,8 +193,8 @@ def choose_by_simulation(
     reasons = (
         f"Of {count} controllers, least motion at rates of the actuator, none surely reduces the motion more "
         f"within the limits, with and without stall: mean {100.0 * best.reduction:.1f} % on {_HEATS[-1]} "
-        "realisations kept for the choice. Of equals it has the most margin. The law of stall is assumed; "
-        "rate, dead time and stall of the actuator are drawn about those that are declared or logged.",
+        "realisations kept for the choice. Of equals it has the most margin. The law of stall is assumed. Rate, dead "
+        "time and stall of the actuator are drawn about the declared or logged ones.",
         f"It loses {100.0 * np.mean(best.losses):.1f} points of reduction to angle and rate limits there; a loss of "
         f"{100.0 * MAX_SATURATION_LOSS:.0f} points or more is not recommended.",
     )
