@@ -56,7 +56,7 @@ class _Candidate:
 
     Attributes:
         limited, stalled: reductions in each sea with the actuator's limits, without and with stall, (seeds,).
-        linear: those without limits, simulated when first asked for: only the loss to the limits needs them.
+        linear: those without limits, simulated at the first call: only the loss to the limits needs them.
         effort: energy if an objective, else variance of the rate.
         is_on_bound: whether a gain lies on a bound of the search that is not zero.
         is_delay_kept: whether the delay margin is long enough.

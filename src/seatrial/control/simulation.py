@@ -81,12 +81,12 @@ def seaway_reductions(
     """
     spread = task.uncertainty.actuator
 
-    def drawn(number: int) -> tuple[TransferLoop, Sequence[ActuatorLimits]]:
+    def actuator(number: int) -> tuple[TransferLoop, Sequence[ActuatorLimits]]:
         place = np.random.default_rng([number, _ACTUATOR_STREAM]).uniform(-1.0, 1.0, 3)
         limits, there = spread.actuator_at(place, task.actuator_limits, loop)
         return there, actuator_stages(limits)[stages]
 
-    return _seaway_trials(task, loop, gains, seed, drawn)[0]
+    return _seaway_trials(task, loop, gains, seed, actuator)[0]
 
 
 def actuator_stages(limits: ActuatorLimits) -> tuple[ActuatorLimits, ActuatorLimits, ActuatorLimits]:

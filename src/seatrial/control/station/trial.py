@@ -197,7 +197,9 @@ class StationSimulator:
                 "its station, as its thrusters do not reach; give a slower current or less gusts"
             )
         fleet = draw_craft(self.loop.craft, draws, self.seed)
-        drawn = [radius for radius in map_in_threads(self._drawn_radius, list(enumerate(fleet))) if radius < math.inf]
+        kept_radii = [
+            radius for radius in map_in_threads(self._drawn_radius, list(enumerate(fleet))) if radius < math.inf
+        ]
         distance, heading, thrust, given = (
             np.concatenate([getattr(run, name) for run in counted_runs])
             for name in ("distance", "heading", "thrust", "given")
@@ -213,8 +215,8 @@ class StationSimulator:
             used=np.sqrt(np.mean(thrust**2, axis=0)),
             record=self._record(runs[worst], float(directions[worst])),
             draws=len(fleet),
-            stable_draws=len(drawn),
-            worst_radius=max(drawn, default=math.nan),
+            stable_draws=len(kept_radii),
+            worst_radius=max(kept_radii, default=math.nan),
         )
 
     @property

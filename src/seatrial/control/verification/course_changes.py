@@ -54,7 +54,7 @@ class LoggedChange:
     @property
     def time(self) -> Array:
         """Return seconds from the order on, (n,)."""
-        return self.dt * np.arange(len(self.order))
+        return np.asarray(self.dt * np.arange(len(self.order)), dtype=np.float64)
 
     @property
     def change(self) -> float:
@@ -219,10 +219,10 @@ def _order_and_motion(
     run = _OrderedRun.of_change(task, loop, change)
     error = run.level - np.interp(run.time, change.time, smoothed(change.output, fast))
     moved = run.simulated(task, still, error)[1]
-    achieved, was = (
-        smoothed(one, fast) for one in (np.clip(np.interp(change.time, run.time, moved), *stops), change.actuator)
+    achieved, motion = (
+        smoothed(angle, fast) for angle in (np.clip(np.interp(change.time, run.time, moved), *stops), change.actuator)
     )
-    return achieved - smoothed(achieved, slow), was - smoothed(was, slow)
+    return achieved - smoothed(achieved, slow), motion - smoothed(motion, slow)
 
 
 _AT_REST = Block("plant that stands still", (0.0,), (1.0, 1.0))

@@ -117,9 +117,8 @@ def linear_model(states: tuple[str, ...], inputs: tuple[str, ...], A: Array, B: 
     """
     key = ("linear model", *states, *inputs, pattern.tolist())
     model = stored_model(key, lambda: _written(states, inputs, pattern), (Path(__file__).parent,))
-    entries = [(f"A_{i}_{j}", A[i, j]) for i, j in np.argwhere(pattern)]
-    entries += [(f"B_{i}_{j}", value) for (i, j), value in np.ndenumerate(B)]
-    return model.with_values(dict(entries))
+    entries = {f"A_{i}_{j}": float(A[i, j]) for i, j in np.argwhere(pattern)}
+    return model.with_values(entries | {f"B_{i}_{j}": float(value) for (i, j), value in np.ndenumerate(B)})
 
 
 def _written(states: tuple[str, ...], inputs: tuple[str, ...], pattern: Array) -> Model:
