@@ -17,8 +17,8 @@ import numpy as np
 from measure import Line, at_most
 
 from seatrial import api
-from seatrial.control.proposals import GainSchedule, Stretch, gain_schedule, look
-from seatrial.control.schedule import schedule
+from seatrial.control.proposals import Stretch, look
+from seatrial.control.schedule import GainSchedule, gain_schedule, schedule
 from seatrial.control.task import ScheduleGrid, Seaway, TuningTask
 from seatrial.control.verification.stabiliser import natural_period, prior_deviations
 from seatrial.core.results.online import Proposal

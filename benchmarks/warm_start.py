@@ -130,6 +130,13 @@ def floor(environment: dict[str, str]) -> float:
     return min(float(done.stdout) for done in runs[1:])
 
 
+def _write_two_fronts(folder: Path) -> None:
+    """Write the loop file of the fins without schedule and trials at sea: the fronts of its two structures."""
+    text = (EXAMPLES / "fin_stabiliser.toml").read_text(encoding="utf-8")
+    made = f"{text[: text.index('[schedule]')]}[simulation]\nseeds = 0\n"
+    (folder / "two_fronts.toml").write_text(made, encoding="utf-8")
+
+
 def commands(folder: Path) -> dict[str, list[str]]:
     """Every command on its example, writing below a folder; some read what `identify` wrote."""
     fit = folder / "fit"
@@ -143,6 +150,7 @@ def commands(folder: Path) -> dict[str, list[str]]:
         "tune": ["tune", f"{EXAMPLES}/waterjet_autopilot.toml", "--from", f"{fit}/model.toml",
                  "--out", f"{folder}/tuning"],
         "fins": ["tune", f"{EXAMPLES}/fin_stabiliser.toml", "--out", f"{folder}/fins"],
+        "fronts": ["tune", str(folder / "two_fronts.toml"), "--out", f"{folder}/fronts"],
         "follow": ["follow", f"{EXAMPLES}/waterjet_follow.toml", "--once", "--out", f"{folder}/followed"],
     }  # fmt: skip
 
@@ -154,6 +162,7 @@ def run(names: tuple[str, ...] = ("check", "identify", "simulate", "report")) ->
         environment = {**os.environ, "PYTHONPYCACHEPREFIX": f"{folder}/bytecode"}
         environment["OPENBLAS_NUM_THREADS"] = "1"  # as the command line sets it, also for the floor
         environment.pop("PYTHONDONTWRITEBYTECODE", None)
+        _write_two_fronts(Path(folder))
         least = floor(environment)
         lines.append(Line("imports alone", least, "s"))
         for name in names:

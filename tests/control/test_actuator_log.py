@@ -9,6 +9,7 @@ from tests.control.loop_files import PATROL_BOAT, write_loop_file
 
 from seatrial.control.actuator_log import actuator_response, logged_records, simulated_angles
 from seatrial.control.loopfile.load import tuning_task
+from seatrial.control.task import ActuatorSpread
 from seatrial.core.values import Channel, InputError, Record, RecordKind
 from seatrial.data.read import write_record_csv
 
@@ -73,8 +74,13 @@ def test_a_loop_is_simulated_with_what_the_log_shows(tmp_path: Path) -> None:
     assert task.loop.sampling is not None and task.loop.sampling.dead_time == pytest.approx(DEAD_TIME, abs=0.1)
     (lag,) = task.loop.servo
     assert -1.0 / lag.poles[0].real == pytest.approx(LAG, rel=0.15)
-    assert task.uncertainty.dead_time > task.loop.sampling.dead_time
+    assert task.uncertainty.dead_time is not None and task.uncertainty.dead_time > task.loop.sampling.dead_time
     assert "by its log" in task.plant
+    spread = task.uncertainty.actuator
+    assert spread.rate < ActuatorSpread().rate and spread.stall == ActuatorSpread().stall
+    assert spread.dead_time * task.loop.sampling.dead_time == pytest.approx(
+        task.uncertainty.dead_time - task.loop.sampling.dead_time
+    )
 
 
 def test_what_the_file_declares_is_kept(tmp_path: Path) -> None:
@@ -82,3 +88,4 @@ def test_what_the_file_declares_is_kept(tmp_path: Path) -> None:
     task = tuning_task(write_loop_file(tmp_path, PATROL_BOAT, ("dead_time = 0.5", 'dead_time = 0.5\nlog = "gear.csv"')))
     assert task.constraints.rate == pytest.approx(math.radians(8.0))
     assert task.loop.sampling is not None and task.loop.sampling.dead_time == 0.5
+    assert task.uncertainty.actuator == ActuatorSpread()

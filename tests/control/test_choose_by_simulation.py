@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 from tests.control.fin_tasks import PUBLISHED, fin_task
 
-from seatrial.control.choice import HARD_WORKING, ROBUST, _best_candidate, _Candidate, _designs, _SelectionSeas
+from seatrial.control.choice import (
+    _HEATS,
+    HARD_WORKING,
+    ROBUST,
+    _best_candidate,
+    _Candidate,
+    _designs,
+    _SelectionSeas,
+)
 from seatrial.control.gain_evaluation import gain_evaluator, gains_on_bound
 from seatrial.control.task import SimulationSettings
 
@@ -54,7 +62,7 @@ def test_a_race_ends_at_the_candidate_that_all_seas_would_choose() -> None:
     raced, whole = seas.raced(made), [seas.tried(one) for one in made]
     best, wanted = _best_candidate(raced), _best_candidate(whole)
     assert np.array_equal(best.gains, wanted.gains) and np.array_equal(best.reductions, wanted.reductions)
-    assert len(best.limited) == 8 and len(raced) < len(made)
+    assert len(best.limited) == _HEATS[-1] and len(raced) < len(made)
 
 
 def test_a_robust_and_a_hard_working_design_stand_beside_the_choice() -> None:

@@ -70,11 +70,9 @@ def test_ships_of_the_fit_are_counted(sd: float, *, share_lost: bool) -> None:
     ship = trim_ship(ModelFile(model, np.diag([sd**2, 1e-4])), output="psi", actuator="delta")
     plant, disturbance = plant_and_disturbance(ship)
     loop = heading_loop(plant, disturbance, (), parts=("KP", "KD"))
-    box, met = PlantUncertainty(draws=100), (SlowDisturbance(0.03, 0.05, 1.0),)
-    task = TuningTask(
-        "", "autopilot", "", loop, met, OBJECTIVES, ControllerConstraints(), 1.0, trimmed_ship=ship, uncertainty=box
-    )
-    judged = robustness(task, loop, "start", loop.gain_values)
+    met = (SlowDisturbance(0.03, 0.05, 1.0),)
+    task = TuningTask("", "autopilot", "", loop, met, OBJECTIVES, ControllerConstraints(), 1.0, trimmed_ship=ship)
+    judged = robustness(task, loop, "start", loop.gain_values, draws=100)
     assert (judged.stable_draws, judged.draws) == stable_draws(task, loop.gain_values, draws=100)
     assert (judged.stable_draws < judged.draws) == share_lost == math.isinf(judged.draws_Ms)
     if not share_lost:

@@ -9,8 +9,9 @@ from tests.control.fin_tasks import KNOT, PUBLISHED, VARIANCES, fin_task
 from tests.control.loop_files import PATROL_BOAT, write_loop_file
 
 from seatrial.control.loopfile.load import tuning_task
-from seatrial.control.schedule import interpolated_gains, midpoints, schedule, schedule_conditions
+from seatrial.control.schedule import gain_schedule, midpoints, schedule, schedule_conditions
 from seatrial.control.task import Effectiveness, ScheduleGrid
+from seatrial.core.results.tuning import OperatingPoint
 from seatrial.physics.loops import margins
 
 SPEEDS = tuple(kn * KNOT for kn in (14.0, 18.0, 22.0))
@@ -72,10 +73,11 @@ def test_gains_of_a_condition_s_own_are_never_worse_than_one_set_for_all(points)
 
 
 def test_gains_are_interpolated_straight_along_every_axis():
-    grid = np.stack(np.meshgrid([0.0, 1.0], [0.0, 2.0, 4.0], indexing="ij"), axis=-1).reshape(-1, 2)
-    made = interpolated_gains((2, 3), grid)
-    fine = np.stack(np.meshgrid(midpoints([0.0, 1.0]), midpoints([0.0, 2.0, 4.0]), indexing="ij"), axis=-1)
-    np.testing.assert_allclose(made, fine.reshape(-1, 2))
+    conditions = [(U, beta, height) for height in (2.0, 4.0) for U in (7.0, 9.0) for beta in (0.5, 1.0, 2.0)]
+    known = [OperatingPoint(*at, {"KP": at[0], "KI": at[1], "KD": at[2]}, 0.5, 1.2, 0.0, {}, True) for at in conditions]
+    fine = np.stack(np.meshgrid(midpoints([7.0, 9.0]), midpoints([0.5, 1.0, 2.0]), [2.5], indexing="ij"), axis=-1)
+    between = gain_schedule(known, ("KP", "KI", "KD")).gains_at(fine.reshape(-1, 3))
+    np.testing.assert_allclose(between, fine.reshape(-1, 3))
 
 
 def test_without_gains_nothing_is_left_out():

@@ -19,7 +19,15 @@ from seatrial.control.simulation import (
     sum_harmonics,
     wave_components,
 )
-from seatrial.control.task import Effectiveness, Seaway, SimulationSettings, TrimmedShip, TuningTask
+from seatrial.control.task import (
+    ActuatorSpread,
+    Effectiveness,
+    PlantUncertainty,
+    Seaway,
+    SimulationSettings,
+    TrimmedShip,
+    TuningTask,
+)
 from seatrial.core.results.tuning import SeawaySimulation
 from seatrial.core.values import InputError
 from seatrial.physics.loops import ActuatorDrive, LiftingSurface, LoopSignal, Performance, Sampling
@@ -29,7 +37,7 @@ from seatrial.physics.loops.performance import calm_actuator, distinct_variances
 from seatrial.physics.loops.structures import Preamplifier, fin_loop
 from seatrial.physics.models.roll import roll
 from seatrial.physics.sea.spectrum import ittc, jonswap
-from seatrial.physics.simulate.closed_loop import ClosedLoop, sample_noise, simulation_step
+from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop, sample_noise, simulation_step
 
 BEAM = Seaway(ittc(3.3), 18.0 * KNOT, math.pi / 2, HULL)
 QUARTERING = replace(BEAM, beta=math.radians(45.0), spreading=1.0)
@@ -209,6 +217,35 @@ def test_noise_costs_roll_and_every_sea_has_noise_of_its_own() -> None:
     same = replace(task, loop=noisy.loop)
     first, second = (seaway_reductions(same, same.loop, PUBLISHED, seed)[:, 0] for seed in (0, 1))
     np.testing.assert_array_equal(first[1:], second[:-1])
+
+
+def with_spread(task: TuningTask, share: float) -> TuningTask:
+    return replace(task, uncertainty=PlantUncertainty(actuator=ActuatorSpread(share, share, share)))
+
+
+def test_in_the_ranking_the_actuator_differs_from_sea_to_sea_as_much_as_its_spread_says() -> None:
+    """Without a spread it is the declared one of the results; with one all controllers meet the same actuators."""
+    task = at_sea(4, 300.0)
+    task = replace(task, loop=replace(task.loop, sampling=Sampling(0.05, 0.1)))
+    shown = simulate_in_seaway(task, task.loop, "one", HIGH, 0)
+    declared, drawn, again = (
+        seaway_reductions(one, one.loop, HIGH, 0) for one in (with_spread(task, 0.0), with_spread(task, 0.5), task)
+    )
+    np.testing.assert_array_equal(declared.T, [shown.linear, shown.limited, shown.stalled])
+    assert np.all(np.abs(drawn - declared).max(axis=0) > [1e-4, 0.003, 0.003])
+    assert np.all(np.abs(again - declared).max(axis=0) < np.abs(drawn - declared).max(axis=0))
+    np.testing.assert_array_equal(drawn[:, 1:], seaway_reductions(with_spread(task, 0.5), task.loop, HIGH, 0)[:, 1:])
+
+
+def test_places_of_a_spread_are_shares_of_what_is_declared() -> None:
+    loop = replace(fin_task().loop, sampling=Sampling(0.1, 0.5))
+    spread = ActuatorSpread(0.1, 0.2, 0.3)
+    limits, there = spread.actuator_at(np.array([-1.0, 1.0, -1.0]), ActuatorLimits(0.4, 0.5, 0.3), loop)
+    assert (limits.limit, limits.rate, limits.stall) == pytest.approx((0.4, 0.45, 0.21))
+    assert there.sampling is not None and there.sampling.dead_time == pytest.approx(0.6)
+    assert spread.actuator_at(np.ones(3), ActuatorLimits(), loop)[0] == ActuatorLimits()
+    with pytest.raises(InputError, match="rate = 1"):
+        ActuatorSpread(rate=1.0)
 
 
 def test_energy_in_the_same_seas_is_compared_pairwise(paper: SeawaySimulation) -> None:

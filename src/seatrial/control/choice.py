@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, reduce
+from functools import cache, cached_property, reduce
 from itertools import pairwise
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 from scipy.special import stdtrit
 
 from seatrial.control.controller import shortfall
-from seatrial.control.front import RATES, rate_curve
+from seatrial.control.front import rate_curve
 from seatrial.control.gain_evaluation import (
     ON_BOUND,
     GainChoice,
@@ -24,24 +24,27 @@ from seatrial.control.gain_evaluation import (
     motion_and_rate_variances,
     spread_gains,
 )
-from seatrial.control.simulation import actuator_stages, seaway_reductions
+from seatrial.control.simulation import seaway_reductions
 from seatrial.control.task import Demand, TuningTask
 from seatrial.core.results.tuning import ParetoFront
-from seatrial.core.values import Array
+from seatrial.core.values import Array, DivergedError
 from seatrial.physics.loops import delay_margin
 from seatrial.physics.loops.objective import ENERGY
-from seatrial.physics.simulate.closed_loop import ActuatorLimits
 
 # The choice of a stabiliser: optima at rates of the actuator and with more margin, all through the same seas.
 
 MAX_SATURATION_LOSS = 0.03  # reduction lost to the actuator's limits, as a share of one; chosen
-# seas after which candidates are left out, all in the end; and how far their seeds lie from those of the final
-# simulations; chosen
-_HEATS, _SELECTION_SEED_OFFSET = (3, 8), 100_000
+# seas after which candidates are left out, all in the end, and how long each is [s]: many short ones, as each has an
+# actuator of its own; and how far their seeds lie from those of the final simulations; chosen
+_HEATS, _SEA_SECONDS, _SELECTION_SEED_OFFSET = (6, 20), 250.0, 100_000
 # reductions that differ less count as equal; share of the permitted loss used in the selection; chosen
 _EQUAL_REDUCTION, _LARGEST_LOSS = 0.003, 0.85 * MAX_SATURATION_LOSS
+_ABOUT = 7  # rates between the neighbours of the best one, that one among them; chosen
 _CONFIDENCE = 0.95  # level of the paired interval within which a benefit is none; chosen
 _SAFER_MS, _EQUAL_MS = (1.3, 1.45), 0.05  # caps of designs with more margin; Ms that count as equal; chosen
+_RUN_AWAY = (
+    -1.0
+)  # reduction of a loop that runs away with an actuator of the spread: the motion at least doubles; chosen
 _LEAST_SHARE = 1e-12  # of amplitudes beyond a limit; guards the logarithm
 ROBUST, HARD_WORKING = "robust", "hard-working"
 """Names of the two designs that stand beside the chosen one."""
@@ -53,7 +56,7 @@ class _Candidate:
 
     Attributes:
         limited, stalled: reductions in each sea with the actuator's limits, without and with stall, (seeds,).
-        linear: simulates those without limits, which only the loss to the limits needs.
+        linear: those without limits, simulated at the first call: only the loss to the limits needs them.
         effort: energy if an objective, else variance of the rate.
         is_on_bound: whether a gain lies on a bound of the search that is not zero.
         is_delay_kept: whether the delay margin is long enough.
@@ -111,9 +114,11 @@ class _SelectionSeas:
     @cached_property
     def _heats(self) -> list[tuple[TuningTask, int]]:
         """The task with the seas of each heat, and the seed of the first of them."""
-        assert self.task.simulation is not None
+        trials = self.task.simulation
+        assert trials is not None
+        short = replace(trials, duration=min(trials.duration, _SEA_SECONDS))
         return [
-            (replace(self.task, simulation=replace(self.task.simulation, seeds=last - first)), self.seed + first)
+            (replace(self.task, simulation=replace(short, seeds=last - first)), self.seed + first)
             for first, last in pairwise((0, *_HEATS))
         ]
 
@@ -122,36 +127,41 @@ class _SelectionSeas:
         return reduce(_after_heat, self._heats, candidate)
 
     def raced(self, candidates: Sequence[_Candidate]) -> list[_Candidate]:
-        """Return those among which the best one of all must be, in all seas.
+        """Return those in all seas among which the best one of all is.
 
-        After the first heat the others need not be simulated: they surely reduce less than the best (Maron & Moore
-        1994, Hoeffding races, Adv. Neural Inf. Process. Syst. 6; here by paired differences), or neither reduce more
-        nor come before one that is as good.
+        After the first heat those that surely reduce less than the best are left out (Maron & Moore 1994, Hoeffding
+        races, Adv. Neural Inf. Process. Syst. 6; here by paired differences). Of the others the one that reduces most
+        meets all seas, then those that come before it, until one reduces as much.
         """
         few, others = self._heats
         equals = _equals([_after_heat(candidate, few) for candidate in candidates])
         most = _first_kept(equals, _reduction_first)
-        leaders = [c for c in equals if _benefit(most, c) <= 0.0 and _lower_end(c.losses) < _LARGEST_LOSS]
-        tried = {candidate: _after_heat(candidate, others) for candidate in leaders}
+        tried = [_after_heat(most, others)]
         for candidate in sorted(equals, key=_preference):
-            winner = tried[candidate] = tried.get(candidate) or _after_heat(candidate, others)
-            if winner in _equals([*tried.values()]) and winner.is_loss_small:
+            if candidate is most:
+                winner = tried[0]
+            else:
+                tried.append(winner := _after_heat(candidate, others))
+            if winner in _equals(tried) and winner.is_loss_small:
                 break
-        return [*tried.values()]
+        return tried
 
 
 def _after_heat(one: _Candidate, heat: tuple[TuningTask, int]) -> _Candidate:
     """Return a candidate that has met the seas of one more heat."""
     task, seed = heat
-    free, *limits = actuator_stages(task)
+    assert task.simulation is not None
 
-    def reductions(stages: Sequence[ActuatorLimits]) -> Array:
+    def reductions(stages: slice) -> Array:
         return seaway_reductions(task, one.evaluator.loop, one.gains, seed, stages).T
 
-    limited, stalled = reductions(limits)
+    try:
+        limited, stalled = reductions(slice(1, None))
+    except DivergedError:
+        limited = stalled = np.full(task.simulation.seeds, _RUN_AWAY)
     return replace(
         one, limited=np.concatenate([one.limited, limited]), stalled=np.concatenate([one.stalled, stalled]),
-        linear=lambda: np.concatenate([one.linear(), *reductions([free])]),
+        linear=cache(lambda: np.concatenate([one.linear(), *reductions(slice(1))])),
     )  # fmt: skip
 
 
@@ -183,7 +193,8 @@ def choose_by_simulation(
     reasons = (
         f"Of {count} controllers, least motion at rates of the actuator, none surely reduces the motion more "
         f"within the limits, with and without stall: mean {100.0 * best.reduction:.1f} % on {_HEATS[-1]} "
-        "realisations kept for the choice. Of equals it has the most margin. The law of stall is assumed.",
+        "realisations kept for the choice. Of equals it has the most margin. The law of stall is assumed. Rate, dead "
+        "time and stall of the actuator are drawn about the declared or logged ones.",
         f"It loses {100.0 * np.mean(best.losses):.1f} points of reduction to angle and rate limits there; a loss of "
         f"{100.0 * MAX_SATURATION_LOSS:.0f} points or more is not recommended.",
     )
@@ -279,7 +290,7 @@ def _is_same(one: _Candidate, other: _Candidate) -> bool:
 def _levels_about(levels: Array, place: int) -> Array:
     """Return rates between the neighbours of one of `levels`, without those themselves and without it."""
     low, high = levels[max(place - 1, 0)], levels[min(place + 1, len(levels) - 1)]
-    return np.setdiff1d(np.linspace(low, high, RATES + 2)[1:-1], levels)
+    return np.setdiff1d(np.linspace(low, high, _ABOUT + 2)[1:-1], levels)
 
 
 # One controller out of the fronts, with reasons: by simulation where there is one, else the compromise.

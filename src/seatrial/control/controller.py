@@ -14,7 +14,7 @@ from seatrial.control.gain_evaluation import (
     exceedance_share,
 )
 from seatrial.control.ship import DRAWS, draw_parameters, plant_as_model, stable_draws
-from seatrial.control.task import OUTPUT, Demand, TrimmedShip, TuningTask
+from seatrial.control.task import OUTPUT, SLOWEST, Demand, TrimmedShip, TuningTask
 from seatrial.core.results.tuning import (
     Component,
     Controller,
@@ -24,21 +24,24 @@ from seatrial.core.results.tuning import (
     ReferenceFilter,
 )
 from seatrial.core.values import (
-    NOTATION,
     Array,
-    Channel,
     DivergedError,
     InputError,
-    Provenance,
-    Record,
-    RecordKind,
     frozen,
 )
 from seatrial.physics.loops import Block, Sampling, TransferLoop, margins, reversals_per_hour
 from seatrial.physics.loops.autopilot import START, FeedForward, acceleration_feed_forward, working_frequency
 from seatrial.physics.loops.discrete import default_sample_time, difference_equation, holding_terms
 from seatrial.physics.loops.performance import frequency_band
-from seatrial.physics.simulate.closed_loop import REFERENCE, ActuatorLimits, ClosedLoop, simulation_step, steps_a_sample
+from seatrial.physics.simulate.closed_loop import (
+    REFERENCE,
+    ActuatorLimits,
+    ClosedLoop,
+    fastest_motion,
+    simulation_step,
+    steps_a_sample,
+)
+from seatrial.physics.simulate.replay import series_record
 
 # A demand carried out: a change and a zigzag by the nonlinear model within its limits, and by ships the fit allows.
 
@@ -48,7 +51,6 @@ _SHOWN_DRAWS, _SAMPLES = 20, 1000  # sampled ships and samples in time that a fi
 _FEWEST_STEPS, _MOST_STEPS, _STEP_SHARE = 1000, 20_000, 0.2
 _SETTLING_BAND = 0.05  # share of the change: the usual 5 % settling band
 _LEGS = 4  # of the zigzag: two to either side; chosen
-_SLOWEST_POLE = 1e-6  # rad/s, taken for a loop without states
 _CHANGE_NAMES = {"psi": "course change", "u": "speed change"}
 
 
@@ -80,7 +82,7 @@ def simulate_manoeuvres(
     ship = task.trimmed_ship or plant_as_model(loop)
     drawn = draw_parameters(ship, draws, seed)
     stable = sum(drawn.stable_ships(loop, gains)), drawn.draws
-    limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
+    limits = task.actuator_limits.without_stall
     return tuple(
         _simulate_manoeuvre(one, ship, loop, name, gains, limits, drawn.ships, stable)
         for one in _programmes(task, loop, gains, task.required_demand)
@@ -90,9 +92,12 @@ def simulate_manoeuvres(
 def shortfall(task: TuningTask, loop: TransferLoop, gains: Array, *, draws: int = DRAWS) -> tuple[float, str]:
     """How far the gains (g,) are from following the task's change, to be compared, and why; 0 and nothing if they do.
 
-    Every ship drawn is to be stable; the identified one settles within 5 % and overshoots no more than allowed.
+    Every ship drawn is to be stable; the identified one settles within 5 % and overshoots no more than allowed. Both
+    have the slowest and latest actuator of the task's spread.
     """
     asked = task.required_demand
+    limits, loop = task.uncertainty.actuator.actuator_at(SLOWEST, task.actuator_limits, loop)
+    task = replace(task, constraints=replace(task.constraints, rate=limits.rate))
     stable, drawn = stable_draws(task, gains, loop, draws=draws)
     lost = drawn - stable
     try:
@@ -217,9 +222,7 @@ def _clock(loop: TransferLoop, demand: Demand) -> tuple[float, int]:
 
     Short for everything that moves; one in continuous time is sampled at every step.
     """
-    moving = np.abs(loop.closed_loop_poles) if loop.sampling is None else np.abs(loop.plant.poles)
-    fastest = float(moving.max(initial=_SLOWEST_POLE))
-    count = int(np.clip(math.ceil(demand.duration * fastest / _STEP_SHARE), _FEWEST_STEPS, _MOST_STEPS))
+    count = int(np.clip(math.ceil(demand.duration * fastest_motion(loop) / _STEP_SHARE), _FEWEST_STEPS, _MOST_STEPS))
     dt = simulation_step(loop.sampling, demand.duration / count)
     return dt, 1 if loop.sampling is None else steps_a_sample(loop.sampling, dt)
 
@@ -266,7 +269,13 @@ def _simulate_manoeuvre(
     return ManoeuvreResponse(
         name=programme.name,
         controller=controller,
-        record=_record(f"{programme.name}, {controller}", programme.dt * every, series, loop, every),
+        record=series_record(
+            f"{programme.name}, {controller}",
+            programme.dt * every,
+            {n: values[::every] for n, values in series.items()},
+            f"loop '{loop.name}' following a demand",
+            dict.fromkeys((REFERENCE, DEMAND), loop.output),
+        ),
         output=loop.output,
         overshoot=relative_overshoot(output - trim, programme.demand, programme.step_samples),
         settling=settling_time(output - trim, programme.demand, programme.step_samples, programme.dt),
@@ -291,17 +300,6 @@ def _output_about_trim(
         return answer[0] - _trim(ship)
     except InputError:
         return None
-
-
-def _record(name: str, dt: float, series: dict[str, Array], loop: TransferLoop, every: int) -> Record:
-    channels = {}
-    for symbol, values in series.items():
-        like = loop.output if symbol in (REFERENCE, DEMAND) else symbol
-        some = frozen(np.ascontiguousarray(values[::every]))
-        channels[symbol] = Channel.from_notation(like, some) if like in NOTATION else Channel(some, "1", "none", "none")
-    count = len(next(iter(channels.values())).values)
-    said = Provenance(f"loop '{loop.name}' following a demand")
-    return Record(name, frozen(dt * np.arange(count)), channels, RecordKind.SIMULATED, provenance=said)
 
 
 # One set of gains in words a control engineer knows.

@@ -10,7 +10,7 @@ from scipy.optimize import NonlinearConstraint, minimize
 
 from seatrial.control.task import OUTPUT, Seaway, SlowDisturbance, TuningTask
 from seatrial.core.results.tuning import ControllerConstraints
-from seatrial.core.values import Array, Index
+from seatrial.core.values import Array, Index, frozen
 from seatrial.physics.loops import LoopEvaluation, LoopSignal, Objective, Performance, TransferLoop
 from seatrial.physics.loops.objective import WeightedVariance, variance
 from seatrial.physics.loops.performance import PEAKS, distinct_variances
@@ -73,6 +73,11 @@ class GainEvaluator:
         return distinct_variances(self._judged)[1]
 
     @cached_property
+    def _own_rows(self) -> list[int]:
+        """Rows of output, actuator, its rate and the motion that counts."""
+        return [at[0] for at in self._variance_indices[-4:]]
+
+    @cached_property
     def performances(self) -> tuple[Performance, ...]:
         """One for each thing that disturbs the loop."""
         rows = distinct_variances(self._judged)[0]
@@ -101,7 +106,7 @@ class GainEvaluator:
         """
         if self.task.demand is not None:
             return 1.0
-        place = self._variance_indices[-1][0]
+        place = self._own_rows[3]
         return float(np.mean([p.uncontrolled_variances[place] for p in self.performances]))
 
     @cached_property
@@ -134,26 +139,26 @@ class GainEvaluator:
 
     def _evaluated(self, loops: list[LoopEvaluation]) -> GainEvaluation:
         """Return the judgement of loops, those of each disturbance."""
-        places = self._variance_indices[-4:]
-        variances = np.stack([e.variances[:, [p[0] for p in places]] for e in loops], axis=1)
-        peak = np.max([e.Ms for e in loops], axis=0)
-        worst = variances[:, :, 1:3].max(axis=1)
-        over = np.where(np.isfinite(worst), worst, _UNSTABLE) / self.allowed_variances - 1.0
-        excess = np.column_stack([peak / self.task.constraints.Ms - 1.0, over])
-        return GainEvaluation(self._mean_objectives([e.variances for e in loops]), excess, peak, variances)
+        made = np.array([e.variances for e in loops])
+        variances = made[:, :, self._own_rows].swapaxes(0, 1)
+        peak = np.array([e.Ms for e in loops]).max(axis=0)
+        excess = np.empty((len(peak), 3))
+        excess[:, 0] = peak / self.task.constraints.Ms - 1.0
+        excess[:, 1:] = np.minimum(variances[:, :, 1:3].max(axis=1), _UNSTABLE) / self.allowed_variances - 1.0
+        return GainEvaluation(self._mean_objectives(made), excess, peak, variances)
 
     def objective_values(self, gains: Array) -> Array:
         """Return objectives (n, m) of the gains (n, g), means over what disturbs the loop; infinite where unstable."""
         made = [performance.evaluate(gains, with_Ms=False).variances for performance in self.performances]
-        return self._mean_objectives(made)
+        return self._mean_objectives(np.array(made))
 
-    def _mean_objectives(self, variances: list[Array]) -> Array:
-        """Return objectives (n, m) of the variances (n, r) that each disturbance causes."""
-        values = [
-            np.mean([objective.value(made[:, at]) for made in variances], axis=0)
-            for objective, at in zip(self.objectives, self._variance_indices, strict=False)
-        ]
-        return np.stack(values, axis=1)
+    def _mean_objectives(self, variances: Array) -> Array:
+        """Return objectives (n, m) of the variances that each disturbance causes, (s, n, r)."""
+        means = np.empty((variances.shape[1], len(self.objectives)))
+        for i, (objective, at) in enumerate(zip(self.objectives, self._variance_indices, strict=False)):
+            values = objective.value(variances[:, :, at].reshape(-1, len(at)))
+            means[:, i] = values.reshape(len(variances), -1).mean(axis=0)
+        return means
 
     def slopes(self, gains: Array) -> tuple[Array, Array]:
         """Return d objectives / d gains (m, g) and d excess / d gains (3, g) at one stable point (g,)."""
@@ -170,7 +175,7 @@ class GainEvaluator:
         excess = np.zeros((3, len(gains)))
         frailest = self.performances[int(np.argmax([one.Ms[0] for one in evaluated]))]
         excess[0] = frailest.sensitivity_peaks(gains)[1][0] / self.task.constraints.Ms
-        for i, place in enumerate(at[0] for at in self._variance_indices[-3:-1]):
+        for i, place in enumerate(self._own_rows[1:3]):
             worst = int(np.argmax([v[0, place] for v in made]))
             excess[1 + i] = rows[worst][place] / self.allowed_variances[i]
         return objectives, excess
@@ -189,7 +194,7 @@ class GainEvaluator:
         peaks = [p.sensitivity_peaks(gains) for p, own in zip(self.performances, self._has_own_Ms, strict=True) if own]
         values = [top / self.task.constraints.Ms - 1.0 for top, _ in peaks]
         slopes = [rows / self.task.constraints.Ms for _, rows in peaks]
-        places = [at[0] for at in self._variance_indices[-3:-1]]
+        places = self._own_rows[1:3]
         for loops, performance in zip(self._remembered_loops(_bytes(gains)), self.performances, strict=True):
             values.append(loops.variances[0, places] / self.allowed_variances - 1.0)
             slopes.append(performance.variance_gradients(gains)[places] / self.allowed_variances[:, None])
@@ -222,15 +227,23 @@ _HUGE, _TINY, _NO_SHARE, _LARGEST_EXCESS = 1e30, 1e-300, 1e-12, 1e3
 
 def free_gain_bounds(evaluator: GainEvaluator) -> tuple[Index, GainBounds]:
     """Return the indices of the free gains and their bounds."""
-    gains = evaluator.loop.gains
-    places = np.array([i for i, p in enumerate(gains) if p.free], dtype=np.int64)
-    return places, (np.array([gains.items[i].lower for i in places]), np.array([gains.items[i].upper for i in places]))
+    return _free_gain_bounds(evaluator.loop)
+
+
+@lru_cache(maxsize=_KEPT_LOOPS)
+def _free_gain_bounds(loop: TransferLoop) -> tuple[Index, GainBounds]:
+    places = np.array([i for i, p in enumerate(loop.gains) if p.free], dtype=np.int64)
+    low, high = (frozen(np.array([getattr(p, end) for p in loop.gains.free])) for end in ("lower", "upper"))
+    return places, (low, high)
 
 
 def all_gains(evaluator: GainEvaluator, free: Array) -> Array:
     """Return all gains (n, g) of free ones (n, f); the others as the loop has them."""
-    made = np.tile(evaluator.loop.gain_values, (len(free), 1))
-    made[:, free_gain_bounds(evaluator)[0]] = free
+    places = free_gain_bounds(evaluator)[0]
+    made = np.empty((len(free), len(evaluator.loop.terms)))
+    if len(places) < made.shape[1]:
+        made[:] = evaluator.loop.gain_values
+    made[:, places] = free
     return made
 
 

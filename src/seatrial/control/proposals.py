@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.control.gain_evaluation import GainEvaluator, exceedance_share
-from seatrial.control.schedule import schedule_conditions
+from seatrial.control.schedule import GainSchedule, schedule_conditions
 from seatrial.control.task import Effectiveness, ScheduleGrid, Seaway, TuningTask
 from seatrial.control.verification.stabiliser import natural_period, prior_deviations
 from seatrial.core.results.online import CraftFactor, GainMargins, HeadingRange, Proposal, SeaEstimate
@@ -30,69 +30,7 @@ from seatrial.estimation.sea import (
 )
 from seatrial.physics.loops import margins
 
-# A schedule's gains between its conditions, and where its conditions end.
-
-_AXES = ("speeds", "headings", "heights")
 _SAME = 0.01  # relative difference of Ms that other nodes and versions explain; chosen
-_ALONE = 0.1  # share of the only value of an axis within which it holds; chosen
-
-
-@dataclass(frozen=True, eq=False)
-class GainSchedule:
-    """Gains on a grid of speed, heading and height.
-
-    Attributes:
-        names: of the gains; axes: speeds [m/s], headings [rad] and significant heights [m], each rising.
-        gains: (speeds, headings, heights, g).
-    """
-
-    names: tuple[str, ...]
-    axes: tuple[Array, Array, Array]
-    gains: Array
-
-    def holds(self, conditions: Array) -> NDArray[np.bool_]:
-        """Return which conditions (n, 3) of speed, heading and height lie within the schedule, (n, 3)."""
-        limits = [self.limits(k) for k in range(len(_AXES))]
-        low, high = np.array(limits).T
-        return (conditions >= low) & (conditions <= high)
-
-    def limits(self, axis: int) -> tuple[float, float]:
-        """Return the ends of an axis; of one value a tenth to either side."""
-        first, last = float(self.axes[axis][0]), float(self.axes[axis][-1])
-        return (first, last) if last > first else (first * (1.0 - _ALONE), first * (1.0 + _ALONE))
-
-    def gains_at(self, conditions: Array) -> Array:
-        """Return gains (n, g), linear between conditions, at conditions (n, 3) within the schedule."""
-        from scipy.interpolate import RegularGridInterpolator
-
-        several = [k for k, axis in enumerate(self.axes) if len(axis) > 1]
-        if not several:
-            return np.tile(self.gains.reshape(1, -1), (len(conditions), 1))
-        table = self.gains.reshape(*(len(self.axes[k]) for k in several), -1)
-        return np.asarray(RegularGridInterpolator([self.axes[k] for k in several], table)(conditions[:, several]))
-
-
-def gain_schedule(points: Sequence[OperatingPoint], names: tuple[str, ...]) -> GainSchedule:
-    """Return the schedule of a tuning's points, its gains in the order of `names`.
-
-    Raises:
-        InputError: there are none, gains of other names in some, or not one point for every combination.
-    """
-    if not points:
-        raise InputError("there is no schedule: add [schedule] to the loop file and run 'seatrial tune' again")
-    if any(set(point.gains) != set(names) for point in points):
-        raise InputError("the points of the schedule have different gains; run 'seatrial tune' again")
-    conditions = np.array([(point.U, point.beta, point.height) for point in points])
-    axes, places = zip(*(np.unique(column, return_inverse=True) for column in conditions.T), strict=True)
-    shape = tuple(len(axis) for axis in axes)
-    gains = np.full((*shape, len(names)), np.nan)
-    gains[places] = [[point.gains[name] for name in names] for point in points]
-    if np.prod(shape) != len(points) or not np.all(np.isfinite(gains)):
-        raise InputError(
-            f"the schedule has {len(points)} points for {' x '.join(map(str, shape))} conditions of speed, heading and "
-            "height; give one for every combination"
-        )
-    return GainSchedule(names, (axes[0], axes[1], axes[2]), gains)
 
 
 def refuse_other_craft(task: TuningTask, points: Sequence[OperatingPoint], source: str) -> None:

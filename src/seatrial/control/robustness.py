@@ -14,6 +14,7 @@ from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import Block, TransferLoop, margins
 from seatrial.physics.loops.performance import frequency_band
 
+SHIPS = 1000  # drawn from the covariance of the fit; chosen
 _POINTS = 1000  # frequencies, evenly in the logarithm, on which the largest |S| of each ship is sought; chosen
 
 
@@ -30,7 +31,7 @@ class _Corner:
         return f"gain {self.gain:.3g}, time constants {self.time:.3g}, dead time {self.dead_time:.3g} s"
 
 
-def robustness(task: TuningTask, loop: TransferLoop, name: str, gains: Array) -> Robustness:
+def robustness(task: TuningTask, loop: TransferLoop, name: str, gains: Array, draws: int = SHIPS) -> Robustness:
     """Return how the gains (g,) of a loop hold ships drawn from the fit, and the corners of the task's uncertainty.
 
     A corner has the plant's gain, its time constants and its dead time at one end each; a ship drawn counts as stable
@@ -38,8 +39,8 @@ def robustness(task: TuningTask, loop: TransferLoop, name: str, gains: Array) ->
     """
     own = loop.with_gains(gains)
     omega = np.geomspace(*frequency_band(own), _POINTS)
-    drawn_Ms, stable = _of_draws(task, loop, gains, omega)
-    corners = _corners(task.uncertainty)
+    drawn_Ms, stable = _of_draws(task, loop, gains, omega, draws)
+    corners = _corners(task.uncertainty, loop)
     peaks = [_corner_Ms(own, corner, omega) for corner in corners]
     worst = int(np.argmax(peaks))
     return Robustness(
@@ -48,11 +49,13 @@ def robustness(task: TuningTask, loop: TransferLoop, name: str, gains: Array) ->
     )  # fmt: skip
 
 
-def _of_draws(task: TuningTask, loop: TransferLoop, gains: Array, omega: Array) -> tuple[float, tuple[bool, ...]]:
+def _of_draws(
+    task: TuningTask, loop: TransferLoop, gains: Array, omega: Array, draws: int
+) -> tuple[float, tuple[bool, ...]]:
     """Return the largest Ms of the ships drawn and whether each is stable; infinite where one is not."""
     if task.trimmed_ship is None:
         return math.nan, ()
-    samples = draw_parameters(task.trimmed_ship, task.uncertainty.draws, SEED)
+    samples = draw_parameters(task.trimmed_ship, draws, SEED)
     without_trim = samples.draws - len(samples.ships)
     stable = (*samples.stable_ships(loop, gains), *[False] * without_trim)
     if not stable:
@@ -62,9 +65,12 @@ def _of_draws(task: TuningTask, loop: TransferLoop, gains: Array, omega: Array) 
     return max(_peak(gains @ one.open_loop_terms(omega)) for one in loops_drawn(loop, samples)), stable
 
 
-def _corners(box: PlantUncertainty) -> list[_Corner]:
+def _corners(box: PlantUncertainty, loop: TransferLoop) -> list[_Corner]:
+    """Return the corners of a box; without a dead time of its own up to that of the loop."""
     gains, times = ({1.0 - share, 1.0 + share} for share in (box.gain, box.time))
-    return [_Corner(*one) for one in product(sorted(gains), sorted(times), sorted({0.0, box.dead_time}))]
+    declared = 0.0 if loop.sampling is None else loop.sampling.dead_time
+    latest = declared if box.dead_time is None else box.dead_time
+    return [_Corner(*one) for one in product(sorted(gains), sorted(times), sorted({0.0, latest}))]
 
 
 def _corner_Ms(loop: TransferLoop, corner: _Corner, omega: Array) -> float:
@@ -88,12 +94,7 @@ def slowed_plant(plant: Block, factor: float) -> Block:
     P(factor s), times the factor for each integrator: K / (s (T s + 1)) becomes K / (s (factor T s + 1)).
     """
     integrators = next(i for i, c in enumerate(reversed(plant.den)) if c)
-
-    def stretched(coefficients: tuple[float, ...]) -> tuple[float, ...]:
-        top = len(coefficients) - 1
-        return tuple(c * factor ** (top - i) for i, c in enumerate(coefficients))
-
-    return replace(plant, num=stretched(plant.num), den=stretched(plant.den)).scaled(factor**integrators)
+    return plant.stretched(factor).scaled(factor**integrators)
 
 
 def _peak(open_loop: Complex) -> float:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise, product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from seatrial.control.controller import shortfall, violated_restrictions
 from seatrial.control.gain_evaluation import (
@@ -156,19 +157,67 @@ def midpoints(values: Sequence[float]) -> tuple[float, ...]:
     return tuple(sorted([*values, *between]))
 
 
-def interpolated_gains(shape: tuple[int, ...], gains: Array) -> Array:
-    """Return gains (m, g) on the grid with midpoints along every axis, straight between conditions; gains: (n, g)."""
-    table = gains.reshape(*shape, -1)
-    for axis in range(len(shape)):
-        middle = 0.5 * (np.delete(table, -1, axis) + np.delete(table, 0, axis))
-        size = table.shape[axis] + middle.shape[axis]
-        made = np.empty((*table.shape[:axis], size, *table.shape[axis + 1 :]))
-        even: list[slice] = [slice(None)] * made.ndim
-        odd = list(even)
-        even[axis], odd[axis] = slice(0, None, 2), slice(1, None, 2)
-        made[tuple(even)], made[tuple(odd)] = table, middle
-        table = made
-    return table.reshape(-1, gains.shape[1])
+# A schedule's gains between its conditions, and where its conditions end.
+
+_ALONE = 0.1  # share of the only value of an axis within which it holds; chosen
+
+
+@dataclass(frozen=True, eq=False)
+class GainSchedule:
+    """Gains on a grid of speed, heading and height.
+
+    Attributes:
+        names: of the gains; axes: speeds [m/s], headings [rad] and significant heights [m], each rising.
+        gains: (speeds, headings, heights, g).
+    """
+
+    names: tuple[str, ...]
+    axes: tuple[Array, Array, Array]
+    gains: Array
+
+    def holds(self, conditions: Array) -> NDArray[np.bool_]:
+        """Return which conditions (n, 3) of speed, heading and height lie within the schedule, (n, 3)."""
+        limits = [self.limits(k) for k in range(len(self.axes))]
+        low, high = np.array(limits).T
+        return (conditions >= low) & (conditions <= high)
+
+    def limits(self, axis: int) -> tuple[float, float]:
+        """Return the ends of an axis; of one value a tenth to either side."""
+        first, last = float(self.axes[axis][0]), float(self.axes[axis][-1])
+        return (first, last) if last > first else (first * (1.0 - _ALONE), first * (1.0 + _ALONE))
+
+    def gains_at(self, conditions: Array) -> Array:
+        """Return gains (n, g), linear between conditions, at conditions (n, 3) within the schedule."""
+        from scipy.interpolate import RegularGridInterpolator
+
+        several = [k for k, axis in enumerate(self.axes) if len(axis) > 1]
+        if not several:
+            return np.tile(self.gains.reshape(1, -1), (len(conditions), 1))
+        table = self.gains.reshape(*(len(self.axes[k]) for k in several), -1)
+        return np.asarray(RegularGridInterpolator([self.axes[k] for k in several], table)(conditions[:, several]))
+
+
+def gain_schedule(points: Sequence[OperatingPoint], names: tuple[str, ...]) -> GainSchedule:
+    """Return the schedule of a tuning's points, its gains in the order of `names`.
+
+    Raises:
+        InputError: there are none, gains of other names in some, or not one point for every combination.
+    """
+    if not points:
+        raise InputError("there is no schedule: add [schedule] to the loop file and run 'seatrial tune' again")
+    if any(set(point.gains) != set(names) for point in points):
+        raise InputError("the points of the schedule have different gains; run 'seatrial tune' again")
+    conditions = np.array([(point.U, point.beta, point.height) for point in points])
+    axes, places = zip(*(np.unique(column, return_inverse=True) for column in conditions.T), strict=True)
+    shape = tuple(len(axis) for axis in axes)
+    gains = np.full((*shape, len(names)), np.nan)
+    gains[places] = [[point.gains[name] for name in names] for point in points]
+    if np.prod(shape) != len(points) or not np.all(np.isfinite(gains)):
+        raise InputError(
+            f"the schedule has {len(points)} points for {' x '.join(map(str, shape))} conditions of speed, heading and "
+            "height; give one for every combination"
+        )
+    return GainSchedule(names, (axes[0], axes[1], axes[2]), gains)
 
 
 # Gains for every speed, heading and height of sea, beside one set for all.
@@ -270,9 +319,10 @@ def schedule(
     there = task.at_speed or (lambda _: task)
     starts = [there(U).loop.gain_values for U in grid.speeds]
     samples = np.concatenate([spread_gains(conditions[0].evaluator, seed), starts, *([g] for g in baselines.values())])
-    alone = []
+    alone: list[Array] = []
     for i, condition in enumerate(conditions):
-        alone.append(_own_gains(condition.evaluator, samples))
+        near = [alone[i - step] for step in (1, len(grid.headings)) if i >= step]
+        alone.append(_own_gains(condition.evaluator, samples, near))
         report_progress(f"schedule: {i + 1} of {len(conditions)} conditions")
     best = np.array(alone)
     compared = {name: np.tile(gains, (len(conditions), 1)) for name, gains in baselines.items()}
@@ -292,15 +342,16 @@ def schedule(
     trades.append(ScheduleTrade(math.inf, float(np.mean(gain_grid.costs(best)))))
     compared |= {"each its own": best, "one for all": np.tile(one, (len(conditions), 1))}
     points = _operating_points(task, conditions, gains, compared)
-    return Schedule(points, tuple(trades), _check_between(task, grid, shape, gains))
+    return Schedule(points, tuple(trades), _check_between(task, grid, points))
 
 
-def _own_gains(evaluator: GainEvaluator, samples: Array) -> Array:
+def _own_gains(evaluator: GainEvaluator, samples: Array, near: Sequence[Array]) -> Array:
     """Return the gains of a condition alone (g,): of the least output, and where a demand is followed, that follow it.
 
-    The actuator's rate is lowered until the demand is kept; where it never is, the gains that come nearest.
+    The actuator's rate is lowered until the demand is kept; where it never is, the gains that come nearest. near: those
+    of neighbouring conditions, which are followed to this one.
     """
-    best = least_output_gains(evaluator, samples)
+    best = least_output_gains(evaluator, samples, near)
     if evaluator.task.demand is None:
         return best
     used = float(evaluator.evaluate(best[None]).variances[0, :, 2].max())
@@ -355,13 +406,15 @@ def _lacks(evaluator: GainEvaluator, judged: GainEvaluation, gains: Array) -> tu
     return (*broken, short) if short else broken
 
 
-def _check_between(task: TuningTask, grid: ScheduleGrid, shape: tuple[int, ...], gains: Array) -> ScheduleCheck:
+def _check_between(task: TuningTask, grid: ScheduleGrid, points: Sequence[OperatingPoint]) -> ScheduleCheck:
     """Return how interpolated gains keep the restrictions on the grid with its midpoints."""
     fine = replace(grid, speeds=midpoints(grid.speeds), headings=midpoints(grid.headings),
                    heights=midpoints(grid.heights))  # fmt: skip
-    between = interpolated_gains(shape, gains)
-    judged = [c.evaluator.evaluate(own[None]) for c, own in
-              zip(schedule_conditions(task, fine), between, strict=True)]  # fmt: skip
+    conditions = schedule_conditions(task, fine)
+    between = gain_schedule(points, task.loop.gains.names).gains_at(
+        np.array([(one.U, one.beta, one.height) for one in conditions])
+    )
+    judged = [one.evaluator.evaluate(own[None]) for one, own in zip(conditions, between, strict=True)]
     return ScheduleCheck(len(judged), sum(bool(j.is_feasible[0]) for j in judged), max(float(j.Ms[0]) for j in judged))
 
 

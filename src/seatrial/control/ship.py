@@ -4,14 +4,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import islice
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.control.task import TrimmedShip, TuningTask
 from seatrial.core.equations import Model
-from seatrial.core.equations.model import RUDDER, stored_model
+from seatrial.core.equations.model import RUDDER
 from seatrial.core.values import NOTATION, Array, InputError, Parameter, Parameters, frozen, spelling_hint
 from seatrial.core.values.record import froude_factor
 from seatrial.data.folder.model_file import ModelFile
@@ -21,6 +20,7 @@ from seatrial.numerics.kernels.integrate import evaluate_tangent
 from seatrial.numerics.kernels.loop import is_hurwitz
 from seatrial.physics.hydro.free_roll import equivalent_damping
 from seatrial.physics.loops import Block, TransferLoop
+from seatrial.physics.loops.loop_states import plant_model
 from seatrial.physics.models.thrust_orders import YAW
 from seatrial.physics.simulate.linear import LinearSystem
 from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
@@ -182,34 +182,13 @@ def jacobian_at(model: Model, states: Array, inputs: Array, *, of_outputs: bool)
 
 
 def plant_as_model(loop: TransferLoop) -> TrimmedShip:
-    """The plant in observable form (Kailath 1980, Linear Systems, section 2.1), at rest: its first state is the output.
+    """The plant as a linear model, at rest: its first state is the output.
 
     Raises:
         InputError: the plant answers at once.
     """
-    plant = loop.plant
-    if len(plant.num) == len(plant.den):
-        raise InputError(f"the plant of loop '{loop.name}' answers at once; give the lag that every real one has")
-    den, n = np.array(plant.den) / plant.den[0], plant.order
-    num = np.concatenate([np.zeros(n - len(plant.num)), np.array(plant.num) / plant.den[0]])
-    key = ("plant as model", loop.actuator, loop.output, plant.source, den.tolist(), num.tolist())
-    model = stored_model(key, lambda: _written(loop, den, num), (Path(__file__).parent,))
-    return TrimmedShip(model, np.zeros(n), np.zeros(1), loop.actuator, loop.output)
-
-
-def _written(loop: TransferLoop, den: Array, num: Array) -> Model:
-    import sympy as sp
-
-    from seatrial.core.equations import Sheet
-
-    n = loop.plant.order
-    sheet = Sheet(f"{loop.actuator} to {loop.output}", loop.plant.source or "as given", "a plant, linear")
-    states = sheet.states(" ".join([loop.output, *(f"{loop.output}_{i}" for i in range(1, n))]))
-    actuator = sheet.input(loop.actuator)
-    for i, state in enumerate(states):
-        following = states[i + 1] if i + 1 < n else sp.Integer(0)
-        sheet.rate(state, following - float(den[i + 1]) * states[0] + float(num[i]) * actuator, "observable form")
-    return sheet.model()
+    model = plant_model(replace(loop, disturbance=loop.plant))
+    return TrimmedShip(model, np.zeros(len(model.states)), np.zeros(len(model.inputs)), loop.actuator, loop.output)
 
 
 # From an identified model to the plant of a loop: the trim, and the transfer functions about it.
@@ -304,7 +283,7 @@ def linearise(ship: TrimmedShip) -> LinearSystem:
 
 
 def _mean_matrices(one: LinearSystem, other: LinearSystem) -> LinearSystem:
-    return LinearSystem(*(0.5 * (getattr(one, k) + getattr(other, k)) for k in ("A", "B", "C", "D")))
+    return LinearSystem(*(0.5 * (getattr(one, name) + getattr(other, name)) for name in ("A", "B", "C", "D")))
 
 
 def _one_sided_matrices(ship: TrimmedShip) -> tuple[LinearSystem, LinearSystem]:
@@ -378,9 +357,14 @@ def _transfer_function(ship: TrimmedShip, linear: LinearSystem, name: str) -> Bl
     return _response(ship, linear, sign * linear.B[:, column], sign * float(linear.D[column]), name)
 
 
-def _response(ship: TrimmedShip, linear: LinearSystem, b: Array, feed: float, name: str) -> Block:
+def _minimal(linear: LinearSystem, b: Array) -> tuple[Array, Array, Array]:
+    """Return A, b, c of the states that follow an input b (nx,) and show in the output."""
     kept = _linked_states(linear.A, _is_significant(b)) & _linked_states(linear.A.T, _is_significant(linear.C))
-    A, b, c = linear.A[np.ix_(kept, kept)], b[kept], linear.C[kept]
+    return linear.A[np.ix_(kept, kept)], b[kept], linear.C[kept]
+
+
+def _response(ship: TrimmedShip, linear: LinearSystem, b: Array, feed: float, name: str) -> Block:
+    A, b, c = _minimal(linear, b)
     den = _characteristic_polynomial(A)
     num, M = [feed], np.eye(len(A))
     for k in range(len(A)):
@@ -440,21 +424,28 @@ class ParameterDraws:
         return tuple(all(list(islice(stable, len(plants)))) for plants in self.plants)
 
 
+def drawn_values(model: Model, covariance: Array, draws: int, seed: int) -> list[dict[str, float]]:
+    """Return free parameters by name, sampled from their Gaussian; none without a covariance. Nothing is truncated."""
+    if not covariance.size:
+        return []
+    free = model.parameters.free
+    spread = np.random.default_rng(seed).standard_normal((draws, len(free))) @ square_root(covariance).T
+    points = np.array([p.value for p in free]) + spread
+    return [dict(zip(model.parameters.free_names, point, strict=True)) for point in points.tolist()]
+
+
 @lru_cache(maxsize=_KEPT)
 def draw_parameters(ship: TrimmedShip, draws: int = DRAWS, seed: int = SEED) -> ParameterDraws:
     """Return ships sampled from the Gaussian of the free parameters; none where the fit has no covariance.
 
-    The same seed gives the same ships. Nothing is truncated.
+    The same seed gives the same ships.
     """
     if not ship.covariance.size or not draws:
         return ParameterDraws(0, (), ())
-    free = ship.model.parameters.free
-    centre: Array = np.array([p.value for p in free])
-    points = centre + np.random.default_rng(seed).standard_normal((draws, len(free))) @ square_root(ship.covariance).T
     ships, plants = [], []
-    for point in points:
+    for values in drawn_values(ship.model, ship.covariance, draws, seed):
         try:
-            sampled = with_parameters(ship, dict(zip([p.name for p in free], point.tolist(), strict=True)))
+            sampled = with_parameters(ship, values)
             plants.append(_plant_blocks(sampled))
             ships.append(sampled)
         except InputError:
@@ -473,11 +464,11 @@ def stable_draws(
 
 
 def _plant_blocks(ship: TrimmedShip) -> tuple[Block, ...]:
-    sides = _one_sided_matrices(ship)
-    matrices = (_mean_matrices(*sides), *sides)
-    blocks = [_transfer_function(ship, one, ship.actuator) for one in matrices]
-    alike = all(side.den == blocks[0].den and side.num == blocks[0].num for side in blocks[1:])
-    return (blocks[0],) if alike else tuple(blocks)
+    sides, column = _one_sided_matrices(ship), ship.model.input_names.index(ship.actuator)
+    parts = [(*_minimal(side, side.B[:, column]), side.D[column]) for side in sides]
+    alike = all(np.array_equal(one, other) for one, other in zip(*parts, strict=True))
+    matrices = sides[:1] if alike else (_mean_matrices(*sides), *sides)
+    return tuple(_transfer_function(ship, linear, ship.actuator) for linear in matrices)
 
 
 @lru_cache(maxsize=_KEPT)

@@ -40,6 +40,7 @@ _REACH, _FREQUENCIES = 12.0, 4001  # highest frequency over the modal one that i
 _FELT_HEADINGS = (0.5 * math.pi, 0.25 * math.pi)
 _KEPT_SEAS = 8  # sets of seas kept in memory: one for each setting in use; chosen
 _CONFIDENCE = 0.95  # level of the intervals of means over seeds
+_ACTUATOR_STREAM = 13  # of random numbers, apart from those of the seas and the noise of the same seed; chosen
 
 
 def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: Array, seed: int) -> SeawaySimulation:
@@ -53,12 +54,13 @@ def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: A
         InputError: the task has no sea or no trials, or the sea does not move the ship.
         DivergedError: the loop runs away.
     """
-    reductions, energies = _seaway_trials(task, loop, gains, seed, actuator_stages(task))
+    stages = actuator_stages(task.actuator_limits)
+    reductions, energies = _seaway_trials(task, loop, gains, seed, lambda _: (loop, stages))
     seaway, trials = _sea_and_trials(task)
-    steered, everything = closed_loop(task, loop, gains, seaway.U, trials.dt), _actuator_limits(task)
+    steered = closed_loop(task, loop, gains, seaway.U, trials.dt)
     met = disturbance_series(seaway, trials, seed)[0]
     first = round(RUN_IN_SECONDS / trials.dt)
-    shown = _without_run_in(_record(task, steered, f"{name}, first sea", met, seaway, everything), first)
+    shown = _without_run_in(_record(task, steered, f"{name}, first sea", met, seaway, task.actuator_limits), first)
     still = replace(steered, gains=np.zeros(len(gains)))
     alone = _without_run_in(_record(task, still, "without control", met, seaway, UNLIMITED), first)
     uncontrolled = {f"{name}_{UNCONTROLLED}": alone.channel(name) for name in (loop.output, MOTION) if name in alone}
@@ -69,32 +71,49 @@ def simulate_in_seaway(task: TuningTask, loop: TransferLoop, name: str, gains: A
 
 
 def seaway_reductions(
-    task: TuningTask, loop: TransferLoop, gains: Array, seed: int, stages: Sequence[ActuatorLimits] | None = None
+    task: TuningTask, loop: TransferLoop, gains: Array, seed: int, stages: slice = slice(None)
 ) -> Array:
     """Return reductions of the output's rms in each sea against no control there, (seeds, stages).
 
-    stages: limits of the actuator, by default those of `actuator_stages`. Raises what `simulate_in_seaway` does.
+    The actuator is drawn from the task's spread, evenly, in each sea anew and for every controller alike.
+
+    stages: of `actuator_stages`. Raises what `simulate_in_seaway` does.
     """
-    return _seaway_trials(task, loop, gains, seed, actuator_stages(task) if stages is None else stages)[0]
+    spread = task.uncertainty.actuator
+
+    def actuator(number: int) -> tuple[TransferLoop, Sequence[ActuatorLimits]]:
+        place = np.random.default_rng([number, _ACTUATOR_STREAM]).uniform(-1.0, 1.0, 3)
+        limits, there = spread.actuator_at(place, task.actuator_limits, loop)
+        return there, actuator_stages(limits)[stages]
+
+    return _seaway_trials(task, loop, gains, seed, actuator)[0]
 
 
-def actuator_stages(task: TuningTask) -> tuple[ActuatorLimits, ActuatorLimits, ActuatorLimits]:
+def actuator_stages(limits: ActuatorLimits) -> tuple[ActuatorLimits, ActuatorLimits, ActuatorLimits]:
     """Return the actuator without limits, with those of angle and rate, and with stall as well."""
-    everything = _actuator_limits(task)
-    return UNLIMITED, everything.without_stall, everything
+    return UNLIMITED, limits.without_stall, limits
 
 
 def _seaway_trials(
-    task: TuningTask, loop: TransferLoop, gains: Array, seed: int, stages: Sequence[ActuatorLimits]
-) -> tuple[Array, Array]:
-    """Return `seaway_reductions`, and J in an hour by drive and drag at the last stage, (seeds, 2); nan undeclared."""
+    task: TuningTask, loop: TransferLoop, gains: Array, seed: int,
+    actuator: Callable[[int], tuple[TransferLoop, Sequence[ActuatorLimits]]],
+) -> tuple[Array, Array]:  # fmt: skip
+    """Return reductions, and J in an hour by drive and drag at the last stage, (seeds, 2); nan undeclared.
+
+    actuator: of the sea of a seed, the loop with its dead time and the stages of its limits.
+    """
     seaway, trials = _sea_and_trials(task)
     steered = closed_loop(task, loop, gains, seaway.U, trials.dt)
     seas = disturbance_series(seaway, trials, seed)
 
     def of_one(number: int) -> Array:
-        runs = [_trial(task, steered, seas[number], seaway, limits, seed + number) for limits in stages]
-        return np.array([*(rms for rms, _ in runs), *_hourly_energies(task, steered, runs[-1][1], seaway.U)])
+        there, stages = actuator(seed + number)
+        run = steered if there is loop else replace(steered, loop=replace(steered.loop, sampling=there.sampling))
+        runs: dict[ActuatorLimits, tuple[float, Array]] = {}
+        for limits in stages:
+            runs[limits] = runs.get(limits) or _trial(task, run, seas[number], seaway, limits, seed + number)
+        made = [runs[limits] for limits in stages]
+        return np.array([*(rms for rms, _ in made), *_hourly_energies(task, run, made[-1][1], seaway.U)])
 
     free = np.array(_uncontrolled_rms(task, seaway, seed))
     columns = np.array(map_in_threads(of_one, range(len(seas))))
@@ -119,10 +138,6 @@ def _sea_and_trials(task: TuningTask) -> tuple[Seaway, SimulationSettings]:
     if seaway is None or task.simulation is None:
         raise InputError("to simulate a stabiliser the tuning needs a sea and trials; give both, or leave trials out")
     return seaway, task.simulation
-
-
-def _actuator_limits(task: TuningTask) -> ActuatorLimits:
-    return ActuatorLimits(task.constraints.limit, task.constraints.rate, task.constraints.stall)
 
 
 @lru_cache(maxsize=_KEPT_SEAS)
@@ -352,7 +367,7 @@ def simulate_disturbances(
     itself. Seas are sums of harmonics, slow disturbances exact steps of their process.
     """
     predicted = np.sqrt(gain_evaluator(task, loop).evaluate(gains[None]).variances[0, :, :3])
-    limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
+    limits = task.actuator_limits.without_stall
     return tuple(
         _simulate(met, met.disturbed(task.loop_at(met.U, loop)).with_gains(gains), limits, expected, seed)
         for met, expected in zip(task.disturbances, predicted, strict=True)

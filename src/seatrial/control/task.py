@@ -9,13 +9,20 @@ from functools import lru_cache
 from typing import Annotated
 
 import numpy as np
-from pydantic import Field
+from pydantic import AfterValidator, BeforeValidator, Field
 from pydantic.dataclasses import dataclass
 
 from seatrial.core.equations import Model
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import Array, InputError, display_unit
-from seatrial.data.trial.amounts import STRICT_FIELDS, raises_input_error
+from seatrial.data.trial.amounts import (
+    STRICT_FIELDS,
+    InSi,
+    PositiveLength,
+    PositiveSpeed,
+    Quantities,
+    raises_input_error,
+)
 from seatrial.numerics.optimise import GeneticSettings, Normaliser
 from seatrial.physics.loops import (
     WAVE_SLOPE,
@@ -32,12 +39,15 @@ from seatrial.physics.loops import (
     variance,
 )
 from seatrial.physics.loops.encounter_spectrum import PointSpectrum, disturbance_spectrum
+from seatrial.physics.loops.loop import MOST_SAMPLES
 from seatrial.physics.loops.objective import vertical_acceleration
 from seatrial.physics.sea.spectrum import Spectrum
+from seatrial.physics.simulate.closed_loop import ActuatorLimits
 
 # Settings of the published genetic algorithm: a table of the loop file, a value in Python.
 
 Probability = Annotated[float, Field(ge=0, le=1)]
+Share = Annotated[float, Field(ge=0, lt=1)]
 
 
 class SearchedObjectives(StrEnum):
@@ -102,8 +112,10 @@ class GeneticTuning:
 # damping ratio below which a swing counts as undamped: a tenth of the least of bare hulls (0.01: Lloyd 1989); chosen
 _UNDAMPED = 1e-3
 OUTPUT = variance("output", "rad^2", LoopSignal.OUTPUT)
+_KEPT_LOOPS = 64  # with other dead times, kept in memory; chosen
 _KEPT_SEAS = 256  # whose quadrature is kept: those of a schedule and between, of fronts on the same plant; chosen
 _sea_disturbance = lru_cache(maxsize=_KEPT_SEAS)(sea_disturbance)
+_ROUNDING = 1e-9  # rad by which a heading may lie outside
 _SLOWEST, _FASTEST = 1e-3, 1e2  # frequencies of a slow disturbance over its bandwidth; chosen
 _BEYOND = 30.0  # its highest frequency over the plant's fastest pole; chosen
 
@@ -210,17 +222,39 @@ class Effectiveness(Enum):
     SPEED_SQUARED = "U^2"
 
 
-@dataclasses.dataclass(frozen=True)
+def _amounts(value: object) -> object:
+    """Return a list of amounts for a table of values with one unit; anything else as it is."""
+    if not (isinstance(value, dict) and {"values"} <= set(value) <= {"values", "unit"}):
+        return value
+    return [{"value": number, "unit": value.get("unit")} for number in value["values"]]
+
+
+def _heading(value: float) -> float:
+    """Return a heading to the waves, 0 following to pi head [rad]."""
+    if not -_ROUNDING <= value <= math.pi + _ROUNDING:
+        raise InputError(
+            f"{value:g} rad is no heading to the waves from 0 (following) to half a turn (head); write it with its "
+            f'unit, such as {{ value = {value:g}, unit = "deg" }}'
+        )
+    return min(max(value, 0.0), math.pi)
+
+
+Heading = Annotated[float, InSi("rad"), AfterValidator(_heading)]
+_OneOrMore = Field(min_length=1), BeforeValidator(_amounts, json_schema_input_type=tuple[float, ...] | Quantities)
+
+
+@raises_input_error
+@dataclass(frozen=True, config=STRICT_FIELDS)
 class ScheduleGrid:
-    """Conditions of a schedule: U [m/s], beta [rad], significant height [m]; every combination is tuned.
+    """`[schedule]`: speeds U [m/s], headings beta [rad], significant heights [m]; every combination gets its own gains.
 
     largest_step: of a gain between neighbouring conditions, as a share of the larger one.
     """
 
-    speeds: tuple[float, ...]
-    headings: tuple[float, ...]
-    heights: tuple[float, ...]
-    largest_step: float = 0.3  # chosen
+    speeds: Annotated[tuple[PositiveSpeed, ...], *_OneOrMore]
+    headings: Annotated[tuple[Heading, ...], *_OneOrMore]
+    heights: Annotated[tuple[PositiveLength, ...], *_OneOrMore]
+    largest_step: Annotated[float, Field(gt=0, lt=1)] = 0.3  # chosen
 
 
 @dataclasses.dataclass(frozen=True)
@@ -290,14 +324,57 @@ class StationDemand:
     hull: HullFactor | None
 
 
-@dataclasses.dataclass(frozen=True)
-class PlantUncertainty:
-    """How far a ship may differ from the model: shares of the plant's gain and time constants, dead time [s], draws."""
+@raises_input_error
+@dataclass(frozen=True, config=STRICT_FIELDS)
+class ActuatorSpread:
+    """`[uncertainty.actuator]`: shares by which rate, dead time and stall may differ from what is declared.
 
-    gain: float = 0.2  # share of the plant's gain; chosen
-    time: float = 0.1  # share of its time constants; chosen
-    dead_time: float = 0.0
-    draws: int = 1000  # ships from the covariance of the fit; chosen
+    Controllers are ranked with actuators drawn from it; what a log of the actuator shows has the log's interval.
+    """
+
+    rate: Share = 0.2  # of the largest rate; chosen
+    dead_time: Share = 0.2  # of the dead time; chosen
+    stall: Share = 0.2  # of the angle of stall; chosen
+
+    def actuator_at(
+        self, place: Array, limits: ActuatorLimits, loop: TransferLoop
+    ) -> tuple[ActuatorLimits, TransferLoop]:
+        """Return limits and loop at a place of the spread, -1 to 1 of rate, dead time and stall, (3,)."""
+        rate, late, stall = (1.0 + np.array([self.rate, self.dead_time, self.stall]) * place).tolist()
+        there = replace(limits, rate=rate * limits.rate, stall=stall * limits.stall)
+        return there, _with_dead_time(loop, late)
+
+
+@lru_cache(maxsize=_KEPT_LOOPS)
+def _with_dead_time(loop: TransferLoop, factor: float) -> TransferLoop:
+    """Return a loop with its dead time times a factor, no more than is modelled."""
+    sampling = loop.sampling
+    if sampling is None or not sampling.dead_time:
+        return loop
+    dead_time = min(factor * sampling.dead_time, MOST_SAMPLES * sampling.sample_s)
+    return replace(loop, sampling=replace(sampling, dead_time=dead_time))
+
+
+SLOWEST = np.array([-1.0, 1.0, 0.0])
+"""Place in a spread of the actuator that a loop follows a demand by least."""
+
+
+@raises_input_error
+@dataclass(frozen=True, config=STRICT_FIELDS)
+class PlantUncertainty:
+    """`[uncertainty]`: how far a ship may differ from the model, and its actuator from what is declared.
+
+    Attributes:
+        gain, time: shares of the plant's gain and time constants; dead_time: s, the longest; None: as declared.
+    """
+
+    gain: Share = 0.2  # share of the plant's gain; chosen
+    time: Share = 0.1  # share of its time constants; chosen
+    dead_time: Annotated[float, InSi("s"), Field(ge=0)] | None = None
+    actuator: ActuatorSpread = ActuatorSpread()
+
+
+_UNCERTAINTY = PlantUncertainty()
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -361,7 +438,7 @@ class TuningTask:
     drive: ActuatorDrive | None = None
     surface: LiftingSurface | None = None
     sample_s: float | None = None
-    uncertainty: PlantUncertainty = PlantUncertainty()
+    uncertainty: PlantUncertainty = _UNCERTAINTY
     track: TrackDemand | None = None
     station: StationDemand | None = None
     at_speed: "Callable[[float], TuningTask] | None" = None
@@ -383,6 +460,11 @@ class TuningTask:
         """
         row = self.objectives[0].variances[0]
         return vertical_acceleration(row.x) if row.signal is LoopSignal.POINT else OUTPUT
+
+    @property
+    def actuator_limits(self) -> ActuatorLimits:
+        """What the actuator cannot do, as declared."""
+        return ActuatorLimits(self.constraints.limit, self.constraints.rate, self.constraints.stall)
 
     @property
     def required_demand(self) -> Demand:

@@ -13,11 +13,11 @@ from seatrial.control.proposals import (
     RATE,
     SHORTEST_PERIODS,
     Stretch,
-    gain_schedule,
     look,
     no_proposal,
     refuse_other_craft,
 )
+from seatrial.control.schedule import gain_schedule
 from seatrial.control.task import Seaway, TuningTask
 from seatrial.control.verification.stabiliser import natural_period
 from seatrial.core.results.online import Proposal, Sample, Snapshot

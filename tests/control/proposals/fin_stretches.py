@@ -9,8 +9,8 @@ from benchmarks.proposals import EXAMPLE, Weather, stretch
 from tests.control.loop_files import in_continuous_time
 
 from seatrial import api
-from seatrial.control.proposals import GainSchedule, Stretch, gain_schedule
-from seatrial.control.schedule import schedule_conditions
+from seatrial.control.proposals import Stretch
+from seatrial.control.schedule import GainSchedule, gain_schedule, schedule_conditions
 from seatrial.control.task import ScheduleGrid, TuningTask
 from seatrial.core.results.tuning import OperatingPoint
 from seatrial.estimation.sea import altered_loop

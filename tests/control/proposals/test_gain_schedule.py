@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from tests.control.proposals.fin_stretches import HEADINGS, SPEEDS, TASK, fin_schedule, points
 
-from seatrial.control.proposals import gain_schedule, refuse_other_craft
+from seatrial.control.proposals import refuse_other_craft
+from seatrial.control.schedule import gain_schedule
 from seatrial.core.values import InputError
 
 NAMES = TASK.loop.gains.names

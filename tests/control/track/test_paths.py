@@ -68,4 +68,4 @@ def test_the_linear_ship_has_the_matrices_of_the_trim(heading: HeadingLoop) -> N
     kept = [ship.model.states.index(name) for name in model.states]
     A = np.array([[values[f"A_{i}_{j}"] for j in range(len(kept))] for i in range(len(kept))])
     np.testing.assert_array_equal(A, linearise(ship).A[np.ix_(kept, kept)])
-    assert values[f"e_{model.states.index(EAST)}"] == 1.0
+    assert values[f"B_{model.states.index(EAST)}_1"] == 1.0

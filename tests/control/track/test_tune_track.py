@@ -123,7 +123,7 @@ def test_craft_of_a_wide_fit_are_counted(task: TuningTask, demand: TrackDemand) 
         ([("bandwidth = 0.002", "bandwidth = 0.002\ncorner = 3")], "give one up to 120 degrees"),
         (
             [("bandwidth = 0.002", 'bandwidth = 0.02\ncorner = { value = 0, unit = "deg" }')],
-            "track.corner = 0 is not positive",
+            "track.corner: 0 is not positive",
         ),
     ],
 )

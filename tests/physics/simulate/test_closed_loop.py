@@ -1,6 +1,7 @@
 """A loop in time: the linear answer where nothing bites, and what limits, stall and trims do."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,13 +13,19 @@ from scipy.signal import lsim
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, DivergedError, InputError, Parameter, Parameters, Record
 from seatrial.numerics.kernels.feedback import effective_angle
-from seatrial.physics.loops import Block, Term, TransferLoop
+from seatrial.physics.loops import Block, Sampling, Term, TransferLoop
 from seatrial.physics.loops.loop_states import plant_model, state_space
 from seatrial.physics.loops.structures import Preamplifier, fin_loop
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.published import container_ship
 from seatrial.physics.models.waterjet import waterjet
-from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop, hold_equivalent
+from seatrial.physics.simulate.closed_loop import (
+    UNLIMITED,
+    ActuatorLimits,
+    ClosedLoop,
+    fastest_motion,
+    hold_equivalent,
+)
 
 WASHOUT, PRINTED = fin_loop(Preamplifier.WASHOUT), fin_loop(Preamplifier.PRINTED)
 FINS = {"actuator": "alpha_f", "disturbance_input": "alpha_w", "output": "phi"}
@@ -27,6 +34,13 @@ RUDDER = {"actuator": "delta", "disturbance_input": "", "output": "psi"}
 
 def gains(*names: str) -> Parameters:
     return Parameters(tuple(Parameter(name, 1.0, "1", 0.0, 100.0, free=True) for name in names))
+
+
+def test_steps_follow_the_fastest_pole_of_the_loop_and_of_one_that_samples_of_its_plant() -> None:
+    """1 + (P + I / s) / (2 s + 1) with both gains 1: 2 s^2 + 2 s + 1, |s| = sqrt(1/2)."""
+    loop = follower(Block("lag", (1.0,), (2.0, 1.0)))
+    assert fastest_motion(loop) == pytest.approx(math.sqrt(0.5))
+    assert fastest_motion(replace(loop, sampling=Sampling(0.1))) == pytest.approx(0.5)
 
 
 def follower(plant: Block, servo: tuple[Block, ...] = ()) -> TransferLoop:

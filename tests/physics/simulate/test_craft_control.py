@@ -26,7 +26,7 @@ def run_of(own: StationCraft, speed: float, forces: tuple[float, float, float], 
     controller = sampled_controller(loop, Sampling(0.1, 0.1))
     drift = np.stack([-speed * controller.dt * np.arange(count), np.zeros(count)])
     pushed = np.tile(np.array(forces)[:, None], count)
-    return keep_station(own.pushed_model, controller, own.resting_inputs, drift, pushed)
+    return keep_station(own.pushed_model, controller, own.resting_inputs, np.concatenate([drift, pushed]))
 
 
 def test_the_integral_removes_a_steady_current_and_force() -> None:

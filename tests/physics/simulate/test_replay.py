@@ -10,6 +10,7 @@ from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate import forces, inputs_of, replay
+from seatrial.physics.simulate.replay import series_record
 from seatrial.physics.simulate.steer import manoeuvre
 
 JET = {"v_j": 1.866}
@@ -19,6 +20,14 @@ K, T, DELTA = 0.1, 10.0, 0.2
 def step_record(rate: float = 10.0) -> Record:
     time = np.arange(int(60 * rate) + 1) / rate
     return Record.from_arrays("step", time, {"delta": np.full(len(time), DELTA)})
+
+
+def test_series_become_channels_of_the_notation_or_like_another_one() -> None:
+    series = {"psi": np.arange(4.0), "demand": np.ones(4), "x_1": np.zeros(4)}
+    record = series_record("course", 0.5, series, "a loop", {"demand": "psi"})
+    assert record.kind is RecordKind.SIMULATED and record.time.tolist() == [0.0, 0.5, 1.0, 1.5]
+    assert [record.channel(name).unit for name in series] == ["rad", "rad", "1"]
+    assert record.provenance.source == "a loop"
 
 
 @pytest.fixture(scope="module")

@@ -9,10 +9,8 @@ import numpy as np
 from seatrial.control.loopfile.plant import LoopPlant, hull_factor, yaw_acceleration_path
 from seatrial.control.loopfile.schema import (
     LoopFile,
-    ScheduleTable,
     SeawayTable,
     SlowDisturbanceTable,
-    heading_value,
     positive_value,
     symbol_unit,
 )
@@ -191,26 +189,15 @@ def _refuse_other_speeds(seas: Sequence[Seaway], grid: ScheduleGrid | None) -> N
 
 def seaway(table: SeawayTable, U: float, path: WavePath, where: str) -> Seaway:
     """Return one sea; at the plant's speed U [m/s] where it names none."""
-    speed = U if table.speed is None else positive_value(table.speed, "m/s", f"{where}.speed")
-    beta = heading_value(table.heading, f"{where}.heading")
-    return path.seaway(table.to_spectrum(where), speed, beta, table.spreading, where)
-
-
-def schedule_grid(table: ScheduleTable) -> ScheduleGrid:
-    """Return the conditions of a schedule."""
-    return ScheduleGrid(
-        tuple(positive_value(a, "m/s", "schedule.speeds") for a in table.speeds.quantities()),
-        tuple(heading_value(a, "schedule.headings") for a in table.headings.quantities()),
-        tuple(positive_value(a, "m", "schedule.heights") for a in table.heights.quantities()),
-        table.largest_step,
-    )
+    speed = U if table.speed is None else table.speed
+    return path.seaway(table.to_spectrum(where), speed, table.heading, table.spreading, where)
 
 
 def _slow_disturbance(table: SlowDisturbanceTable, plant: LoopPlant, where: str) -> SlowDisturbance:
     return SlowDisturbance(
         positive_value(table.rms, symbol_unit(plant.disturbed_by), f"{where}.rms"),
-        positive_value(table.bandwidth, "rad/s", f"{where}.bandwidth"),
-        plant.U if table.speed is None else positive_value(table.speed, "m/s", f"{where}.speed"),
+        table.bandwidth,
+        plant.U if table.speed is None else table.speed,
         symbol_unit(plant.disturbed_by),
         "of the actuator" if plant.disturbed_by == plant.actuator else f"of {plant.disturbed_by}",
     )

@@ -9,7 +9,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from seatrial.control.actuator_log import actuator_response, logged_records
-from seatrial.control.loopfile.disturbances import loop_disturbances, point_motions, refuse_calm, schedule_grid
+from seatrial.control.loopfile.disturbances import loop_disturbances, point_motions, refuse_calm
 from seatrial.control.loopfile.loop import extended_structure, loop_from_tables, objective, objective_places
 from seatrial.control.loopfile.plant import (
     LoopPlant,
@@ -39,7 +39,6 @@ from seatrial.control.loopfile.schema import (
 from seatrial.control.station.tune_station import refuse_impossible_station
 from seatrial.control.task import (
     Demand,
-    PlantUncertainty,
     Seaway,
     SimulationSettings,
     SlowDisturbance,
@@ -66,6 +65,7 @@ _DELAY_OVER_DEAD_TIME = 1.0  # least delay margin beyond the declared dead time,
 _DEAD_TIME_SAMPLES = 25  # samples of the dead time at most where no sample time is declared; chosen
 _ACCEPTANCE_LENGTHS = 2.0  # of the circle of acceptance, in lengths of the ship: Fossen 2011, section 10.3
 _SHARPEST_CORNER = math.radians(120.0)  # of a track; chosen
+_LARGEST_SHARE = 0.9  # of a spread that a log leaves: an actuator of no rate is none; chosen
 _MOST_STEPS = 1e7  # steps over all seeds; guards against a wrong unit
 
 
@@ -126,16 +126,18 @@ def _with_logged_actuator(file: LoopFile, plant: LoopPlant, home: Path) -> tuple
     except InputError as error:
         raise InputError(f"actuator.log: {error}") from None
     fitted: dict[str, object] = {}
+    shares: dict[str, float] = {}
     if table.rate is None and math.isfinite(response.rate):
         fitted["rate"] = Amount(value=response.rate)
+        shares["rate"] = min(response.rate_error / response.rate, _LARGEST_SHARE)
     if table.dead_time is None and response.dead_time > 0.0:
-        fitted["dead_time"] = Amount(value=response.dead_time)
+        fitted["dead_time"] = response.dead_time
+        shares["dead_time"] = min(response.dead_time_error / response.dead_time, _LARGEST_SHARE)
     if not table.servo and file.controller.kind != "yu2014":
-        fitted["servo"] = (BlockTable(lag=Amount(value=response.lag), name="lag of the actuator", source=table.log),)
-    uncertainty = file.uncertainty
+        fitted["servo"] = (BlockTable(lag=response.lag, name="lag of the actuator", source=table.log),)
+    uncertainty = replace(file.uncertainty, actuator=replace(file.uncertainty.actuator, **shares))
     if uncertainty.dead_time is None and "dead_time" in fitted:
-        latest = Amount(value=response.dead_time + response.dead_time_error)
-        uncertainty = uncertainty.model_copy(update={"dead_time": latest})
+        uncertainty = replace(uncertainty, dead_time=response.dead_time + response.dead_time_error)
     described = f"{plant.description}; {response.sentence(plant.actuator)}"
     return (
         file.model_copy(update={"actuator": table.model_copy(update=fitted), "uncertainty": uncertainty}),
@@ -159,11 +161,11 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
         refuse_unstable(loop)
     restriction = _constraints(file, plant)
     met = loop_disturbances(file, plant, home, places)
-    plan = None if file.schedule is None else schedule_grid(file.schedule)
-    refuse_calm(met, loop, plan)
+    refuse_calm(met, loop, file.schedule)
     if demand is None:
         refuse_wild_motion(met, loop, plant)
-    drive, surface = _drive(file.actuator), _surface(file.actuator)
+    inertia, surface = file.actuator.inertia, _surface(file.actuator)
+    drive = None if inertia is None else ActuatorDrive(inertia, file.actuator.efficiency)
     objectives = tuple(
         _energy_objective(drive, surface, met, where)
         if aim.name == "energy"
@@ -186,19 +188,17 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
             extended_structure(loop, table, f"extended_structures[{i}]", _wave_frequency(met, loop))
             for i, table in enumerate(file.extended_structures, start=1)
         ),
-        schedule_grid=plan,
+        schedule_grid=file.schedule,
         simulation=_simulation_settings(file.simulation, len(file.seas), demand, loop.sampling),
         trimmed_ship=plant.trimmed_ship,
         demand=demand,
         genetic=file.genetic,
         drive=drive,
         surface=surface,
-        uncertainty=_uncertainty(file),
+        uncertainty=file.uncertainty,
         track=None if file.track is None else _track(file.track, plant, demand),
         station=None if file.station is None else _station(file.station, file, plant),
-        sample_s=None
-        if file.controller.sample_s is None
-        else positive_value(file.controller.sample_s, "s", "controller.sample_s"),
+        sample_s=file.controller.sample_s,
     )
     if task.track is not None:
         refuse_impossible_track(task, task.track)
@@ -253,23 +253,7 @@ def _constraints(file: LoopFile, plant: LoopPlant) -> ControllerConstraints:
 
 def _dead_time(table: ActuatorTable) -> float:
     """Return the declared dead time [s]; zero without one."""
-    return 0.0 if table.dead_time is None else positive_value(table.dead_time, "s", "actuator.dead_time")
-
-
-def _uncertainty(file: LoopFile) -> PlantUncertainty:
-    """Return the box; without a dead time of its own up to that which the actuator declares."""
-    table = file.uncertainty
-    dead_time = _dead_time(file.actuator)
-    if table.dead_time is not None:
-        dead_time = positive_value(table.dead_time, "s", "uncertainty.dead_time")
-    return PlantUncertainty(table.gain, table.time, dead_time)
-
-
-def _drive(table: ActuatorTable) -> ActuatorDrive | None:
-    """Return what the drive moves; None where no inertia is declared."""
-    if table.inertia is None:
-        return None
-    return ActuatorDrive(positive_value(table.inertia, "kg m^2", "actuator.inertia"), table.efficiency)
+    return 0.0 if table.dead_time is None else table.dead_time
 
 
 def _surface(table: ActuatorTable) -> LiftingSurface | None:
@@ -278,7 +262,7 @@ def _surface(table: ActuatorTable) -> LiftingSurface | None:
         raise InputError("actuator: the drag of fins or rudders needs both area and aspect_ratio; add the other")
     if table.area is None or table.aspect_ratio is None:
         return None
-    return LiftingSurface(positive_value(table.area, "m^2", "actuator.area"), table.aspect_ratio)
+    return LiftingSurface(table.area, table.aspect_ratio)
 
 
 def _energy_objective(
@@ -320,7 +304,7 @@ def _sampling(file: LoopFile, plant: LoopPlant, loop: TransferLoop) -> Sampling:
     if table.sample_s is None:
         shortest = round_sample_time(dead_time / _DEAD_TIME_SAMPLES)
         return Sampling(max(default_sample_time(loop), shortest), dead_time, **errors)
-    made = Sampling(positive_value(table.sample_s, "s", "controller.sample_s"), dead_time, **errors)
+    made = Sampling(table.sample_s, dead_time, **errors)
     if table.derivative_filter is not None and "derivative" in ringing_blocks(loop, made.sample_s):
         raise InputError(
             f"controller.derivative_filter: it rings at samples of {made.sample_s:g} s; give {0.5 * made.sample_s:g} s "
@@ -344,8 +328,7 @@ def _simulation_settings(
         raise InputError("simulation: there is no block [[seas]] to simulate; leave the table out, or add one")
     if table.seeds == 1:
         raise InputError("simulation.seeds = 1 gives no interval; give two or more, or 0 for no simulation")
-    duration = positive_value(table.duration, "s", "simulation.duration")
-    step = positive_value(table.step, "s", "simulation.step")
+    duration, step = table.duration, table.step
     if step * 100.0 > duration:
         raise InputError(f"simulation: steps of {step:g} s are no simulation of {duration:g} s; make them shorter")
     if table.seeds * duration / step > _MOST_STEPS:
@@ -361,24 +344,18 @@ def _track(table: TrackTable, plant: LoopPlant, demand: Demand | None) -> TrackD
     if demand is None or plant.output != "psi":
         raise InputError('track: a track is kept by a heading loop; give plant.output = "psi" and [demand], or leave '
                          "the table out")  # fmt: skip
-    turn = angle_value(table.corner, "track.corner", 60.0)
-    if turn > _SHARPEST_CORNER:
+    if table.corner > _SHARPEST_CORNER:
         raise InputError(
-            f"track.corner = {math.degrees(turn):.3g} deg is no corner to keep a track around; give one up to "
+            f"track.corner = {math.degrees(table.corner):.3g} deg is no corner to keep a track around; give one up to "
             f"{math.degrees(_SHARPEST_CORNER):.0f} degrees"
         )
     if table.acceptance is not None:
-        acceptance = positive_value(table.acceptance, "m", "track.acceptance")
+        acceptance = table.acceptance
     elif plant.ship is not None and "L" in plant.ship.particulars:
         acceptance = _ACCEPTANCE_LENGTHS * plant.ship.length
     else:
         raise InputError("key 'track.acceptance' is missing, and the ship's length is not known; add it in m")
-    return TrackDemand(
-        positive_value(table.current, "m/s", "track.current"),
-        positive_value(table.bandwidth, "rad/s", "track.bandwidth"),
-        turn,
-        acceptance,
-    )
+    return TrackDemand(table.current, table.bandwidth, table.corner, acceptance)
 
 
 def _station(table: StationTable, file: LoopFile, plant: LoopPlant) -> StationDemand:
@@ -395,13 +372,11 @@ def _station(table: StationTable, file: LoopFile, plant: LoopPlant) -> StationDe
     return StationDemand(
         model=plant.craft.model,
         covariance=plant.craft.covariance,
-        current=positive_value(table.current, "m/s", "station.current"),
-        current_rms=positive_value(table.current_rms, "m/s", "station.current_rms"),
-        current_bandwidth=positive_value(table.bandwidth, "rad/s", "station.bandwidth"),
+        current=table.current,
+        current_rms=table.current_rms,
+        current_bandwidth=table.bandwidth,
         gust_rms=gust,
-        gust_bandwidth=0.0
-        if table.gust_bandwidth is None
-        else positive_value(table.gust_bandwidth, "rad/s", "station.gust_bandwidth"),
+        gust_bandwidth=table.gust_bandwidth or 0.0,
         limit=table.limit,
         dead_time=_dead_time(file.actuator),
         hull=hull_factor(file.hull, plant.ship),
@@ -414,17 +389,15 @@ def _demand(table: DemandTable, plant: LoopPlant) -> Demand:
         raise InputError("demand: a roll stabiliser follows no demand; leave the table out")
     unit = symbol_unit(plant.output)
     change = (
-        angle_value(table.change, "demand.change", 20.0)
-        if unit == "rad"
-        else si_value(table.change, unit, "demand.change")
+        angle_value(table.change, "demand.change") if unit == "rad" else si_value(table.change, unit, "demand.change")
     )
     if not change:
         raise InputError("demand.change = 0 asks for nothing; give a change")
     if table.time_constant is not None:
-        T = positive_value(table.time_constant, "s", "demand.time_constant")
+        T = table.time_constant
     elif plant.ship is not None and "L" in plant.ship.particulars:
         T = plant.ship.length / plant.U
     else:
         raise InputError("key 'demand.time_constant' is missing, and the ship's length is not known; add it in s")
-    settling = math.inf if table.settling is None else positive_value(table.settling, "s", "demand.settling")
+    settling = math.inf if table.settling is None else table.settling
     return Demand(change, table.overshoot, T, _TIME_CONSTANTS * T, settling, table.feed_forward)

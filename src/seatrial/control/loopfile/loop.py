@@ -15,12 +15,10 @@ from seatrial.control.loopfile.schema import (
     ObjectiveTable,
     PassTable,
     positive_value,
-    si_value,
     symbol_unit,
 )
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import NOTATION, InputError, Parameter, Parameters, spelling_hint
-from seatrial.data.trial.amounts import Amount
 from seatrial.physics.loops import Block, LoopSignal, Objective, Term, TransferLoop
 from seatrial.physics.loops.autopilot import heading_loop, pitch_loop, speed_loop
 from seatrial.physics.loops.objective import (
@@ -105,7 +103,7 @@ def _part(loop: TransferLoop, kind: str, shape: PassTable | None, default: tuple
     if shape is None:
         own = abs(ROLL.poles[0])
         return make(default[0] / own * _natural_frequency(loop, f"{where}.{kind.replace('-', '_')}"), default[1])
-    return make(positive_value(shape.omega, "rad/s", f"{where}.{kind.replace('-', '_')}.omega"), shape.damping)
+    return make(shape.omega, shape.damping)
 
 
 def _notch(loop: TransferLoop, table: ExtendedStructureTable, where: str, wave_frequency: float | None) -> Block:
@@ -113,8 +111,7 @@ def _notch(loop: TransferLoop, table: ExtendedStructureTable, where: str, wave_f
         return notch(wave_frequency, *_NOTCH_DEFAULTS)
     if table.notch is None:
         return notch(_natural_frequency(loop, f"{where}.notch"), *_NOTCH_DEFAULTS)
-    omega = positive_value(table.notch.omega, "rad/s", f"{where}.notch.omega")
-    return notch(omega, table.notch.damping, table.notch.depth)
+    return notch(table.notch.omega, table.notch.damping, table.notch.depth)
 
 
 def _clipped_to_bounds(gains: Parameters) -> Parameters:
@@ -192,9 +189,7 @@ def _pid_loop(table: ControllerTable, plant: LoopPlant, dead_time: float) -> Tra
     if len(set(table.parts)) != len(table.parts):
         raise InputError("controller.parts names a part twice; name each once")
     parts = table.parts or tuple(name for name in PID if name in table.gains)
-    given = None if table.derivative_filter is None else positive_value(
-        table.derivative_filter, "s", "controller.derivative_filter"
-    )  # fmt: skip
+    given = table.derivative_filter
     parts = parts or (("KP", "KI") if plant.output == "u" else PID)
     if plant.output == "u" and "KD" not in parts:
         delay = dead_time + _shortest(table)
@@ -217,7 +212,7 @@ def _pid_loop(table: ControllerTable, plant: LoopPlant, dead_time: float) -> Tra
 
 def _shortest(table: ControllerTable) -> float:
     """Return the shortest derivative filter [s] that does not ring by Tustin's rule: half the sample time declared."""
-    return 0.0 if table.sample_s is None else 0.5 * positive_value(table.sample_s, "s", "controller.sample_s")
+    return 0.0 if table.sample_s is None else 0.5 * table.sample_s
 
 
 def _term_block(name: str, tau: float | None) -> Block:
@@ -290,12 +285,12 @@ _DERIVATIVES = ("", "rate of the ", "acceleration of the ")
 def objective(table: ObjectiveTable, plant: LoopPlant, constraints: ControllerConstraints, where: str) -> Objective:
     """Return the objective of that name."""
     if table.x is not None:
-        return _objective_at_point(table, _in_metres(table.x, f"{where}.x"), where)
+        return _objective_at_point(table, table.x)
     what = _generic_name(table.name, plant, where)
     if what == "motion_interruptions":
-        return motion_interruptions(_in_metres(table.height, f"{where}.height"), table.friction)
+        return motion_interruptions(table.height or 0.0, table.friction)
     if what == "motion_sickness":
-        return motion_sickness(_in_metres(table.lever, f"{where}.lever"))
+        return motion_sickness(table.lever or 0.0)
     if what == "actuator_off_target":
         name = f"{_meaning(plant.actuator)} off its target"
         return squared_deviation(
@@ -308,18 +303,17 @@ def objective(table: ObjectiveTable, plant: LoopPlant, constraints: ControllerCo
 
 def objective_places(tables: Sequence[ObjectiveTable]) -> tuple[float, ...]:
     """Return the places [m forward of the origin] that objectives name, each once."""
-    named = enumerate(tables, start=1)
-    return tuple(dict.fromkeys(_in_metres(t.x, f"minimise[{i}].x") for i, t in named if t.x is not None))
+    return tuple(dict.fromkeys(table.x for table in tables if table.x is not None))
 
 
-def _objective_at_point(table: ObjectiveTable, x: float, where: str) -> Objective:
+def _objective_at_point(table: ObjectiveTable, x: float) -> Objective:
     match table.name:
         case "vertical_acceleration":
             return vertical_acceleration(x)
         case "motion_sickness":
             return motion_sickness_at(x)
         case _:
-            return motion_sickness_dose(x, positive_value(table.duration, "s", f"{where}.duration"))
+            return motion_sickness_dose(x, table.duration)
 
 
 def _generic_name(name: str, plant: LoopPlant, where: str) -> str:
@@ -343,11 +337,6 @@ def _target_rms(table: ObjectiveTable, plant: LoopPlant, constraints: Controller
     if not math.isfinite(constraints.limit):
         raise InputError(f"{where}: there is neither a target nor an [actuator] limit to take it from; add one")
     return constraints.limit / math.sqrt(2.0 * math.log(1.0 / constraints.saturation))
-
-
-def _in_metres(quantity: Amount | None, where: str) -> float:
-    assert quantity is not None
-    return si_value(quantity, "m", where)
 
 
 def _meaning(symbol: str) -> str:

@@ -13,8 +13,6 @@ from seatrial.control.loopfile.schema import (
     HullTable,
     PassTable,
     PlantTable,
-    angle_value,
-    positive_value,
     si_value,
     symbol_unit,
 )
@@ -43,7 +41,7 @@ from seatrial.physics.simulate.thrust import DEFAULT_AHEAD
 
 def block(table: BlockTable, name: str, where: str) -> Block:
     """Return the block of one table."""
-    made = _filter(table, where)
+    made = _filter(table)
     if made is not None:
         return replace(made, name=name, source=table.source)
     try:
@@ -66,16 +64,15 @@ def block_text(block: Block) -> str:
     return f"({_polynomial_text(block.num)}) / ({_polynomial_text(block.den)})"
 
 
-def _filter(table: BlockTable, where: str) -> Block | None:
+def _filter(table: BlockTable) -> Block | None:
     if table.lag is not None:
-        return Block("lag", (1.0,), (positive_value(table.lag, "s", f"{where}.lag"), 1.0))
+        return Block("lag", (1.0,), (table.lag, 1.0))
     for kind, create in (("low_pass", low_pass), ("band_pass", band_pass), ("high_pass", high_pass)):
         shape: PassTable | None = getattr(table, kind)
         if shape is not None:
-            return create(positive_value(shape.omega, "rad/s", f"{where}.{kind}.omega"), shape.damping)
+            return create(shape.omega, shape.damping)
     if table.notch is not None:
-        omega = positive_value(table.notch.omega, "rad/s", f"{where}.notch.omega")
-        return notch(omega, table.notch.damping, table.notch.depth)
+        return notch(table.notch.omega, table.notch.damping, table.notch.depth)
     return None
 
 
@@ -161,28 +158,18 @@ def plant_at_speed(
         return plant
     ship = plant.trimmed_ship
     if ship is not None and "u" in (*ship.model.states, *ship.model.input_names):
-        there = table.model_copy(update={"speed": Amount(value=U)})
+        there = table.model_copy(update={"speed": U})
         return plant_from_table(there, home, own_model, model_file)
     if plant.output != "psi" or plant.disturbed_by != plant.actuator:
         raise InputError(
             f"schedule.speeds: how {plant.output} answers {plant.actuator} is known at {plant.U:.4g} m/s alone; give "
             "this speed, or a model with surge"
         )
-    response = _in_time(plant.response, plant.U / U)
+    response = plant.response.stretched(plant.U / U)
     return replace(
         plant, response=response, disturbance=response, U=U, trimmed_ship=None,
         description=f"{plant.description}, carried to {U:.4g} m/s by similarity",
     )  # fmt: skip
-
-
-def _in_time(block: Block, factor: float) -> Block:
-    """Return P(factor s)."""
-
-    def stretched(coefficients: tuple[float, ...]) -> tuple[float, ...]:
-        top = len(coefficients) - 1
-        return tuple(c * factor ** (top - i) for i, c in enumerate(coefficients))
-
-    return replace(block, num=stretched(block.num), den=stretched(block.den))
 
 
 def yaw_acceleration_path(plant: LoopPlant) -> Block:
@@ -205,7 +192,7 @@ def yaw_acceleration_path(plant: LoopPlant) -> Block:
 def hull_factor(table: HullTable | None, ship: Ship | None) -> HullFactor | None:
     """Return the box of the table, or of the ship's own L, B, d; none where neither is known."""
     if table is not None:
-        return HullFactor(*(positive_value(getattr(table, key), "m", f"hull.{key}") for key in ("L", "B", "T")))
+        return HullFactor(table.L, table.B, table.T)
     own = {} if ship is None else ship.particulars
     return HullFactor(own["L"], own["B"], own["d"]) if {"L", "B", "d"} <= set(own) else None
 
@@ -220,9 +207,9 @@ def _responding_block(table: BlockTable, name: str, where: str) -> Block:
 
 def _speed(table: PlantTable) -> float:
     if table.speed is not None:
-        return positive_value(table.speed, "m/s", "plant.speed")
+        return table.speed
     if table.fin is not None and table.fin.at_speed is not None:
-        return positive_value(table.fin.at_speed, "m/s", "plant.fin.at_speed")
+        return table.fin.at_speed
     raise InputError("key 'plant.speed' is missing; add it, such as { value = 18, unit = \"kn\" }")
 
 
@@ -238,7 +225,7 @@ def _plant_of_roll(roll: Block, table: PlantTable, fin: FinTable) -> LoopPlant:
 def _fin_effect(table: FinTable, known_K_alpha: float, U: float) -> tuple[float, Effectiveness, str]:
     """Return K_alpha at the speed U from the known one, how it goes with the speed, and both in words."""
     law = Effectiveness(table.law)
-    at = U if table.at_speed is None else positive_value(table.at_speed, "m/s", "plant.fin.at_speed")
+    at = U if table.at_speed is None else table.at_speed
     K_alpha = known_K_alpha if law is Effectiveness.CONSTANT else K_alpha_at(U, at, known_K_alpha)
     how = "at any speed" if law is Effectiveness.CONSTANT else "growing with the square of the speed"
     return K_alpha, law, f"fins worth {K_alpha:.4g} rad of wave slope for each radian at {U * _KNOTS:.3g} kn, {how}"
@@ -264,17 +251,16 @@ def _plant_of_model(table: PlantTable, source: Path | ModelFile, own_model: Mode
             f"plant: model '{file.model.name}' of '{path}' rolls and knows no fins; add [plant.fin] with K_alpha, or "
             "name a model that is steered"
         )
-    amplitude = None if table.amplitude is None else angle_value(table.amplitude, "plant.amplitude", 10.0)
     inputs = {name: si_value(value, symbol_unit(name), f"plant.inputs.{name}") for name, value in table.inputs.items()}
     for name in inputs:
         _demand_known(name, file.model.input_names, f"plant.inputs.{name}", file.model, "input")
     ship = trim_ship(file, output=output, actuator=actuator, disturbance=disturbance, speed=speed, inputs=inputs)
     _refuse_without_effect(ship, inputs)
-    response, disturbed = plant_and_disturbance(ship, amplitude)
+    response, disturbed = plant_and_disturbance(ship, table.amplitude)
     turned = ""
     if craft is not None and actuator == ORDER:
         turned = order_text(layout_of(craft.model))
-    about = "" if amplitude is None else f"linearised at a roll of {math.degrees(amplitude):.3g} deg"
+    about = "" if table.amplitude is None else f"linearised at a roll of {math.degrees(table.amplitude):.3g} deg"
     return LoopPlant(
         response, disturbed, output, actuator, disturbance or actuator,
         _trim_speed(ship, file) if speed is None else speed, law,

@@ -3,27 +3,26 @@
 import math
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from seatrial.control.task import GeneticTuning
+from seatrial.control.task import GeneticTuning, Heading, PlantUncertainty, ScheduleGrid
 from seatrial.core.values import NOTATION, InputError, si_unit
 from seatrial.data.trial.amounts import (
     Amount,
-    Metres,
-    MetresPerSecond,
-    Radians,
-    RadiansPerSecond,
-    Seconds,
+    InSi,
+    Length,
+    PositiveDuration,
+    PositiveFrequency,
+    PositiveLength,
+    PositiveSpeed,
     SiAmount,
     StrictTable,
-    Unit,
 )
 from seatrial.data.trial.schema import ExcitationTable, SeaTable
 
 # Amounts of a loop file in SI units, tested for their kind; every sentence begins with the key.
 
 _HALF_TURN = math.pi
-_ROUNDING = 1e-9  # rad by which a heading may lie outside
 _RATES = {"rad": "rad/s", "m": "m/s", "m/s": "m/s^2"}
 
 
@@ -55,13 +54,16 @@ def positive_value(quantity: Amount, unit: str, where: str) -> float:
     return value
 
 
-def angle_value(quantity: Amount, where: str, example: float = 22.0) -> float:  # deg; 22 is a usual limit of fins
+def angle_value(quantity: Amount, where: str) -> float:
     """Return a positive angle below half a turn [rad]; degrees were probably meant by others."""
-    value = positive_value(quantity, "rad", where)
+    return _below_half_a_turn(positive_value(quantity, "rad", where), f"{where} = ")
+
+
+def _below_half_a_turn(value: float, subject: str = "") -> float:
     if value >= _HALF_TURN:
         raise InputError(
-            f"{where} = {quantity.value:g} is half a turn or more; write it with its unit, such as "
-            f'{{ value = {example:g}, unit = "deg" }}'
+            f"{subject}{value:g} rad is half a turn or more; write it with its unit, such as "
+            f'{{ value = {value:g}, unit = "deg" }}'
         )
     return value
 
@@ -77,51 +79,22 @@ def rate_value(quantity: Amount, unit: str, where: str) -> float:
     return value
 
 
-def heading_value(quantity: Amount, where: str) -> float:
-    """Return a heading to the waves, 0 following to pi head [rad]."""
-    value = si_value(quantity, "rad", where)
-    if not -_ROUNDING <= value <= math.pi + _ROUNDING:
-        raise InputError(
-            f"{where} = {quantity.value:g} is no heading to the waves from 0 (following) to half a turn (head); "
-            'write it with its unit, such as { value = 90, unit = "deg" }'
-        )
-    return min(max(value, 0.0), math.pi)
-
-
 # The tables of a loop file: strict pydantic models; `seatrial.data.trial.amounts` words what they refuse.
 
 Coefficients = Annotated[tuple[float, ...], Field(min_length=1)]
 Share = Annotated[float, Field(gt=0, lt=1)]
 Positive = Annotated[float, Field(gt=0)]
-
-
-def _as_quantities(value: object) -> object:
-    """Return bare numbers as amounts in SI units."""
-    return {"values": value} if isinstance(value, list) else value
+SmallAngle = Annotated[float, InSi("rad", is_positive=True), AfterValidator(_below_half_a_turn)]
 
 
 def _as_objective(value: object) -> object:
     return {"name": value} if isinstance(value, str) else value
 
 
-class Quantities(StrictTable):
-    """Numbers of one unit; without one they are SI."""
-
-    values: Annotated[tuple[float, ...], Field(min_length=1)]
-    unit: Unit | None = None
-
-    def quantities(self) -> tuple[Amount, ...]:
-        """Return one by one."""
-        return tuple(Amount(value=value, unit=self.unit) for value in self.values)
-
-
-SiQuantities = Annotated[Quantities, BeforeValidator(_as_quantities)]
-
-
 class NotchTable(StrictTable):
     """(s^2 + 2 depth damping omega s + omega^2) / (s^2 + 2 damping omega s + omega^2): `depth` is what passes."""
 
-    omega: RadiansPerSecond
+    omega: PositiveFrequency
     damping: Positive = 0.5
     depth: Annotated[float, Field(ge=0, lt=1)] = 0.1  # gain at omega; chosen
 
@@ -129,7 +102,7 @@ class NotchTable(StrictTable):
 class PassTable(StrictTable):
     """Of second order: low-pass omega^2, band-pass 2 damping omega s, high-pass s^2, over the polynomial of both."""
 
-    omega: RadiansPerSecond
+    omega: PositiveFrequency
     damping: Positive = 0.7  # damping ratio, about that of Butterworth's filter, 0.707
 
 
@@ -143,7 +116,7 @@ class BlockTable(StrictTable):
     low_pass: PassTable | None = None
     band_pass: PassTable | None = None
     high_pass: PassTable | None = None
-    lag: Seconds | None = None
+    lag: PositiveDuration | None = None
     source: str = ""
 
     @model_validator(mode="after")
@@ -168,7 +141,7 @@ class FinTable(StrictTable):
     """
 
     K_alpha: Positive | None = None
-    at_speed: MetresPerSecond | None = None
+    at_speed: PositiveSpeed | None = None
     law: Literal["constant", "U^2"] = "U^2"
 
 
@@ -183,12 +156,12 @@ class PlantTable(StrictTable):
     response: BlockTable | None = None
     model: str | None = None
     scale: Positive | None = None
-    speed: MetresPerSecond | None = None
+    speed: PositiveSpeed | None = None
     fin: FinTable | None = None
     output: str | None = None
     actuator: str | None = None
     disturbance: str | None = None
-    amplitude: Radians | None = None
+    amplitude: SmallAngle | None = None
     inputs: dict[str, SiAmount] = Field(default_factory=dict)
 
     @model_validator(mode="after")
@@ -228,8 +201,8 @@ class ControllerTable(StrictTable):
     kind: Literal["yu2014", "pid", "blocks"]
     preamplifier: Literal["printed", "washout"] = "washout"
     parts: tuple[Literal["KP", "KI", "KD"], ...] = ()
-    derivative_filter: Seconds | None = None
-    sample_s: Seconds | None = None
+    derivative_filter: PositiveDuration | None = None
+    sample_s: PositiveDuration | None = None
     sensor: tuple[BlockTable, ...] = ()
     terms: tuple[TermTable, ...] = ()
     filters: tuple[BlockTable, ...] = ()
@@ -283,12 +256,12 @@ class ActuatorTable(StrictTable):
 
     limit: SiAmount | None = None
     rate: SiAmount | None = None
-    stall: Radians | None = None
-    dead_time: Seconds | None = None
+    stall: SiAmount | None = None
+    dead_time: PositiveDuration | None = None
     log: str = ""
-    inertia: Annotated[SiAmount, Field(json_schema_extra={"x-unit": "kg m^2"})] | None = None
+    inertia: Annotated[float, InSi("kg m^2", is_positive=True)] | None = None
     efficiency: Annotated[float, Field(gt=0, le=1)] = 1.0
-    area: Annotated[SiAmount, Field(json_schema_extra={"x-unit": "m^2"})] | None = None
+    area: Annotated[float, InSi("m^2", is_positive=True)] | None = None
     aspect_ratio: Positive | None = None
     servo: tuple[BlockTable, ...] = ()
 
@@ -296,8 +269,8 @@ class ActuatorTable(StrictTable):
 class SeawayTable(SeaTable):
     """One `[[seas]]` block: a sea, met under a heading (0 following, 180 degrees head) at a speed."""
 
-    heading: Radians
-    speed: MetresPerSecond | None = None
+    heading: Heading
+    speed: PositiveSpeed | None = None
     spreading: Positive | None = None
 
 
@@ -305,8 +278,8 @@ class SlowDisturbanceTable(StrictTable):
     """One `[[slow_disturbances]]` block: its rms, acting like the actuator; bandwidth in rad/s."""
 
     rms: SiAmount
-    bandwidth: RadiansPerSecond
-    speed: MetresPerSecond | None = None
+    bandwidth: PositiveFrequency
+    speed: PositiveSpeed | None = None
 
 
 class SensorsTable(StrictTable):
@@ -319,9 +292,9 @@ class SensorsTable(StrictTable):
 class HullTable(StrictTable):
     """`[hull]`: the box over which the slope of short waves is averaged."""
 
-    L: Metres
-    B: Metres
-    T: Metres
+    L: PositiveLength
+    B: PositiveLength
+    T: PositiveLength
 
 
 ObjectiveName = Literal[
@@ -338,11 +311,11 @@ class ObjectiveTable(StrictTable):
     """
 
     name: ObjectiveName
-    height: Metres | None = None
+    height: Length | None = None
     friction: Positive = 0.25
-    lever: Metres | None = None
-    x: Metres | None = None
-    duration: Seconds = Amount(value=7200.0)  # s; two hours, as O'Hanlon & McCauley 1974
+    lever: Length | None = None
+    x: Length | None = None
+    duration: PositiveDuration = 7200.0  # s; two hours, as O'Hanlon & McCauley 1974
     target: SiAmount | None = None
     one_sided: bool = True
 
@@ -375,21 +348,12 @@ class LimitsTable(StrictTable):
     rate_saturation: Share = 0.2  # of rate amplitudes beyond the rate; chosen
 
 
-class ScheduleTable(StrictTable):
-    """`[schedule]`: conditions, every combination of which gets gains of its own."""
-
-    speeds: SiQuantities
-    headings: SiQuantities
-    heights: SiQuantities
-    largest_step: Share = 0.3  # as in `ScheduleGrid`
-
-
 class SimulationTable(StrictTable):
     """`[simulation]`: the nonlinear check; no seeds, no check."""
 
     seeds: Annotated[int, Field(ge=0, le=1000)] = 20  # seas, as in `SimulationSettings`
-    duration: Seconds = Amount(value=1000.0)  # s, as in `SimulationSettings`
-    step: Seconds = Amount(value=0.05)  # s, as in `SimulationSettings`
+    duration: PositiveDuration = 1000.0  # s, as in `SimulationSettings`
+    step: PositiveDuration = 0.05  # s, as in `SimulationSettings`
 
 
 class DemandTable(StrictTable):
@@ -401,9 +365,9 @@ class DemandTable(StrictTable):
 
     change: SiAmount
     overshoot: Annotated[float, Field(ge=0, lt=1)] = 0.02  # share of the change; chosen
-    settling: Seconds | None = None
+    settling: PositiveDuration | None = None
     feed_forward: bool = False
-    time_constant: Seconds | None = None
+    time_constant: PositiveDuration | None = None
 
 
 class TrackTable(StrictTable):
@@ -413,10 +377,10 @@ class TrackTable(StrictTable):
     tried, and `acceptance` the distance before it at which the next leg is taken.
     """
 
-    current: SiAmount
-    bandwidth: RadiansPerSecond
-    corner: Radians = Amount(value=60.0, unit="deg")  # a usual corner of survey lines; chosen
-    acceptance: Metres | None = None
+    current: PositiveSpeed
+    bandwidth: PositiveFrequency
+    corner: SmallAngle = math.radians(60.0)  # a usual corner of survey lines; chosen
+    acceptance: PositiveLength | None = None
 
 
 class StationTable(StrictTable):
@@ -426,11 +390,11 @@ class StationTable(StrictTable):
     and of one to the side, below `gust_bandwidth`; `limit`: share of full command that may be used.
     """
 
-    current: SiAmount
-    current_rms: SiAmount
-    bandwidth: RadiansPerSecond
+    current: PositiveSpeed
+    current_rms: PositiveSpeed
+    bandwidth: PositiveFrequency
     gust: SiAmount | None = None
-    gust_bandwidth: RadiansPerSecond | None = None
+    gust_bandwidth: PositiveFrequency | None = None
     limit: Annotated[float, Field(gt=0, le=1)] = 1.0
 
     @model_validator(mode="after")
@@ -438,14 +402,6 @@ class StationTable(StrictTable):
         if (self.gust is None) != (self.gust_bandwidth is None):
             raise ValueError("gust and gust_bandwidth go together; give both or neither")
         return self
-
-
-class UncertaintyTable(StrictTable):
-    """`[uncertainty]`: shares by which the plant's gain and time constants may differ, dead time."""
-
-    gain: Annotated[float, Field(ge=0, lt=1)] = 0.2  # as in `PlantUncertainty`
-    time: Annotated[float, Field(ge=0, lt=1)] = 0.1  # as in `PlantUncertainty`
-    dead_time: Seconds | None = None
 
 
 class LoopFile(StrictTable):
@@ -468,12 +424,12 @@ class LoopFile(StrictTable):
     limits: LimitsTable = LimitsTable()
     baselines: dict[str, dict[str, float]] = Field(default_factory=dict)
     extended_structures: tuple[ExtendedStructureTable, ...] = ()
-    schedule: ScheduleTable | None = None
+    schedule: ScheduleGrid | None = None
     simulation: SimulationTable | None = None
     demand: DemandTable | None = None
     track: TrackTable | None = None
     station: StationTable | None = None
-    uncertainty: UncertaintyTable = UncertaintyTable()
+    uncertainty: PlantUncertainty = PlantUncertainty()
     genetic: GeneticTuning = GeneticTuning()
 
 

@@ -3,10 +3,10 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
+from seatrial.control.ship import drawn_values
 from seatrial.control.simulation import (
     correlation_time,
     frequency_band,
@@ -19,14 +19,14 @@ from seatrial.control.station.craft import StationCraft, inverse_rows
 from seatrial.control.station.station_loop import FILTER_SHARE, INTEGRAL_SHARE, StationLoop, station_point
 from seatrial.control.task import Seaway
 from seatrial.core.results.station import StationTrial
-from seatrial.core.values import Array, Channel, DivergedError, InputError, Provenance, Record, RecordKind, frozen
-from seatrial.estimation.predict.draws import square_root
+from seatrial.core.values import Array, DivergedError, InputError, Record
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import HullFactor, YawAcceleration
 from seatrial.physics.loops.loop import Sampling
 from seatrial.physics.models.thruster_layout import MIN_LAG
 from seatrial.physics.simulate.craft_control import StationController, StationRun, ThrusterOrders, keep_station
+from seatrial.physics.simulate.replay import series_record
 
 # What drives a craft off its station: water that moves and forces, as spectra for the loop and series in time.
 
@@ -44,31 +44,6 @@ class DisturbanceSpectrum:
     shares: Complex
 
 
-@dataclass(frozen=True, eq=False)
-class DisturbanceSeries:
-    """How far the water has gone north and east [m] (2, n), and forces X, Y, N (3, n)."""
-
-    drift: Array
-    forces: Array
-
-
-class StationDisturbance(Protocol):
-    """One thing that drives a craft off."""
-
-    @property
-    def description(self) -> str:
-        """In words."""
-        ...
-
-    def spectrum(self) -> DisturbanceSpectrum:
-        """Return what it does by frequency."""
-        ...
-
-    def series(self, dt: float, count: int, rng: np.random.Generator) -> DisturbanceSeries:
-        """Return one realisation of `count` samples."""
-        ...
-
-
 @dataclass(frozen=True)
 class SlowPush:
     """Independent Gauss-Markov processes of some of the six axes: rms (6,), bandwidth [rad/s]."""
@@ -84,11 +59,11 @@ class SlowPush:
         energy = 2.0 * b / math.pi / (w**2 + b**2) * np.gradient(w)
         return DisturbanceSpectrum(w, energy[:, None, None] * np.diag(np.square(self.rms)).astype(np.complex128))
 
-    def series(self, dt: float, count: int, rng: np.random.Generator) -> DisturbanceSeries:
-        """Return one realisation."""
+    def series(self, dt: float, count: int, rng: np.random.Generator) -> Array:
+        """Return one realisation: how far the water has gone north and east [m], and forces X, Y, N, (5, count)."""
         noise = np.array([rms * gauss_markov(self.bandwidth, dt, count, rng) if rms else np.zeros(count)
                          for rms in self.rms])  # fmt: skip
-        return DisturbanceSeries(dt * np.cumsum(noise[:2], axis=1), noise[3:])
+        return np.concatenate([dt * np.cumsum(noise[:2], axis=1), noise[3:]])
 
 
 @dataclass(frozen=True)
@@ -134,12 +109,12 @@ class WavePush:
         np.add.at(shares, place, 0.5 * amplitude[:, :, None] * amplitude[:, None, :].conj())
         return DisturbanceSpectrum(0.5 * (edges[1:] + edges[:-1]), shares)
 
-    def series(self, dt: float, count: int, rng: np.random.Generator) -> DisturbanceSeries:
-        """Return one realisation."""
+    def series(self, dt: float, count: int, rng: np.random.Generator) -> Array:
+        """Return one realisation, (5, count), as `SlowPush` does."""
         omega, amplitude = self._waves(rng)
         drift = [sum_harmonics(omega, amplitude[:, i] / (1j * omega), dt, count) for i in range(2)]
         moment = sum_harmonics(omega, amplitude[:, AXES - 1], dt, count)
-        return DisturbanceSeries(np.array(drift), np.array([np.zeros(count), np.zeros(count), moment]))
+        return np.array([*drift, np.zeros(count), np.zeros(count), moment])
 
     @property
     def _still(self) -> Seaway:
@@ -159,19 +134,14 @@ class WavePush:
         return lines.omega, unit * lines.amplitude[:, None]
 
 
+StationDisturbance = SlowPush | WavePush
+
+
 def joined(spectra: Sequence[DisturbanceSpectrum]) -> DisturbanceSpectrum:
     """Return independent spectra as one."""
     return DisturbanceSpectrum(
         np.concatenate([part.omega for part in spectra]), np.concatenate([part.shares for part in spectra])
     )
-
-
-def summed(series: Sequence[DisturbanceSeries], count: int) -> DisturbanceSeries:
-    """Return what several disturbances do together."""
-    drift, forces = np.zeros((2, count)), np.zeros((3, count))
-    for part in series:
-        drift, forces = drift + part.drift, forces + part.forces
-    return DisturbanceSeries(drift, forces)
 
 
 # A station kept by the nonlinear craft: every direction of the current once, and craft that the fit allows.
@@ -193,27 +163,11 @@ class StationSetting:
     directions: Array
     disturbances: tuple[StationDisturbance, ...]
 
-    def series(self, direction: float, dt: float, count: int, seed: int) -> DisturbanceSeries:
-        """Return one realisation with the steady current from a direction."""
-        rng = np.random.default_rng(seed)
-        varying = summed([disturbance.series(dt, count, rng) for disturbance in self.disturbances], count)
-        gone = -self.current * dt * np.arange(count)
-        drift = varying.drift + np.outer([math.cos(direction), math.sin(direction)], gone)
-        return replace(varying, drift=drift)
-
-
-@dataclass(frozen=True, eq=False)
-class _Footprint:
-    """A run after its run-in, by sample: distance [m], heading [rad], thrust over the largest, share given."""
-
-    distance: Array
-    heading: Array
-    thrust: Array
-    given: Array
-
-    @property
-    def radius(self) -> float:
-        return float(np.percentile(self.distance, _SHARE))
+    def series(self, direction: float, dt: float, count: int, seed: int) -> Array:
+        """Return one realisation with the steady current from a direction, (5, count), as `SlowPush` does."""
+        rng, gone = np.random.default_rng(seed), -self.current * dt * np.arange(count)
+        steady = np.outer([math.cos(direction), math.sin(direction), 0.0, 0.0, 0.0], gone)
+        return np.sum([steady, *(disturbance.series(dt, count, rng) for disturbance in self.disturbances)], axis=0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,31 +188,35 @@ class StationSimulator:
         directions = self.setting.directions
         counted = max(self._least_time, time_to_know(self._correlation_time, len(directions)))
         runs = map_in_threads(lambda k: self._run(self.loop.craft, k, counted), list(range(len(directions))))
-        feet = [self._footprint(run) for run in runs]
-        worst = int(np.argmax([foot.radius for foot in feet]))
-        if not feet[worst].radius < _LOST_LENGTHS * self.loop.craft.layout.length:
+        counted_runs = [run.after(self._first(run)) for run in runs]
+        radii = [_radius(run.distance) for run in counted_runs]
+        worst = int(np.argmax(radii))
+        if not radii[worst] < _LOST_LENGTHS * self.loop.craft.layout.length:
             raise InputError(
                 f"station: in a current from {math.degrees(directions[worst]):.0f} deg off the bow the craft leaves "
                 "its station, as its thrusters do not reach; give a slower current or less gusts"
             )
         fleet = draw_craft(self.loop.craft, draws, self.seed)
-        radii = [radius for radius in map_in_threads(self._drawn_radius, list(enumerate(fleet))) if radius < math.inf]
+        kept_radii = [
+            radius for radius in map_in_threads(self._drawn_radius, list(enumerate(fleet))) if radius < math.inf
+        ]
         distance, heading, thrust, given = (
-            np.concatenate([getattr(foot, name) for foot in feet])
+            np.concatenate([getattr(run, name) for run in counted_runs])
             for name in ("distance", "heading", "thrust", "given")
         )
+        thrust = thrust / [max(table.most, -table.least) for table in self.loop.craft.tables]
         return StationTrial(
             directions=directions,
             position=_rms(distance),
-            radius=float(np.percentile(distance, _SHARE)),
+            radius=_radius(distance),
             heading=_rms(heading),
             thrust=_rms(thrust),
             cut=float(np.mean(given < 1.0)),
             used=np.sqrt(np.mean(thrust**2, axis=0)),
             record=self._record(runs[worst], float(directions[worst])),
             draws=len(fleet),
-            stable_draws=len(radii),
-            worst_radius=max(radii, default=math.nan),
+            stable_draws=len(kept_radii),
+            worst_radius=max(kept_radii, default=math.nan),
         )
 
     @property
@@ -286,19 +244,12 @@ class StationSimulator:
         directions, dt = self.setting.directions, self.controller.dt
         count = min(math.ceil((_RUN_IN * self._time_constant + counted) / dt), _MOST_STEPS)
         direction = float(directions[number % len(directions)])
-        series = self.setting.series(direction, dt, count, self.seed + number)
-        return keep_station(
-            craft.pushed_model, self.controller, craft.resting_inputs, series.drift, series.forces, self.seed + number
-        )
+        pushes = self.setting.series(direction, dt, count, self.seed + number)
+        return keep_station(craft.pushed_model, self.controller, craft.resting_inputs, pushes, self.seed + number)
 
     def _first(self, run: StationRun) -> int:
         """Return the first sample that is counted."""
         return min(round(_RUN_IN * self._time_constant / run.dt), len(run.north) // 2)
-
-    def _footprint(self, run: StationRun) -> _Footprint:
-        first, largest = self._first(run), np.array([max(t.most, -t.least) for t in self.loop.craft.tables])
-        distance = np.hypot(run.north[first:], run.east[first:])
-        return _Footprint(distance, run.heading[first:], run.thrust[first:] / largest, run.given[first:])
 
     def _drawn_radius(self, numbered: tuple[int, StationCraft]) -> float:
         """Return the radius [m] of a craft drawn; infinite where its loop is not stable or it runs away."""
@@ -311,9 +262,10 @@ class StationSimulator:
         if not there.is_stable:
             return math.inf
         try:
-            radius = self._footprint(self._run(craft, number, self._least_time)).radius
+            run = self._run(craft, number, self._least_time)
         except DivergedError:
             return math.inf
+        radius = _radius(run.distance[self._first(run) :])
         return radius if radius < _LOST_LENGTHS * craft.layout.length else math.inf
 
     def _record(self, run: StationRun, direction: float) -> Record:
@@ -321,14 +273,10 @@ class StationSimulator:
         first = self._first(run)
         end = min(len(run.north), first + round(_KEPT_S / run.dt))
         every = max(1, (end - first) // _KEPT_SAMPLES)
-        series = {"x0": run.north, "y0": run.east, "psi": run.heading}
-        channels = {
-            name: Channel.from_notation(name, frozen(np.ascontiguousarray(values[first:end:every])))
-            for name, values in series.items()
-        }
-        time = frozen(run.dt * every * np.arange(len(run.north[first:end:every])))
+        rows = slice(first, end, every)
+        series = {"x0": run.north[rows], "y0": run.east[rows], "psi": run.heading[rows]}
         source = f"station kept in a current from {math.degrees(direction):.0f} deg off the bow"
-        return Record("station", time, channels, RecordKind.SIMULATED, provenance=Provenance(source))
+        return series_record("station", run.dt * every, series, source)
 
 
 def sampled_controller(loop: StationLoop, sampling: Sampling) -> StationController:
@@ -345,12 +293,7 @@ def sampled_controller(loop: StationLoop, sampling: Sampling) -> StationControll
 
 def draw_craft(craft: StationCraft, draws: int, seed: int) -> list[StationCraft]:
     """Return craft sampled from the Gaussian of the fit's free parameters; none where it has no covariance."""
-    if not craft.covariance.size or not draws:
-        return []
-    free = craft.model.parameters.free
-    spread = np.random.default_rng(seed).standard_normal((draws, len(free))) @ square_root(craft.covariance).T
-    names, centre = [p.name for p in free], np.array([p.value for p in free])
-    return [craft.with_values(dict(zip(names, point.tolist(), strict=True))) for point in centre + spread]
+    return [craft.with_values(values) for values in drawn_values(craft.model, craft.covariance, draws, seed)]
 
 
 def thrust_slopes(craft: StationCraft, nominal: StationCraft) -> Array:
@@ -361,6 +304,10 @@ def thrust_slopes(craft: StationCraft, nominal: StationCraft) -> Array:
         share = float(np.interp(half, reference.thrust, reference.share))
         ratios.append(float(np.interp(share, table.share, table.thrust)) / half)
     return np.array(ratios)[list(craft.owner)]
+
+
+def _radius(distance: Array) -> float:
+    return float(np.percentile(distance, _SHARE))
 
 
 def _rms(values: Array) -> float:

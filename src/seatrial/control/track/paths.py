@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike
 from seatrial.control.ship import draw_parameters, plant_and_disturbance, rate_response
 from seatrial.control.task import TrackDemand, TrimmedShip
 from seatrial.core.results.tuning import CornerResponse
-from seatrial.core.values import Array, Channel, DivergedError, InputError, Provenance, Record, RecordKind, frozen
+from seatrial.core.values import Array, Channel, DivergedError, InputError, Record, frozen
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import Block, TransferLoop
-from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop, simulation_step
+from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop, fastest_motion, simulation_step
 from seatrial.physics.simulate.craft_control import LineOfSight, PlannedTrack, TrackRun, follow_track
+from seatrial.physics.simulate.replay import series_record
 
 # How rudder, heading order, waves and current reach heading and track of a craft with a heading loop, linearised.
 
@@ -187,8 +188,7 @@ class CornerTrial:
     @property
     def _step(self) -> float:
         loop = self.heading.loop
-        moving = loop.closed_loop_poles if loop.sampling is None else loop.plant.poles
-        longest = max(_STEP_SHARE / float(np.abs(moving).max()), (_BEFORE + _AFTER) * self._time / _MOST_STEPS)
+        longest = max(_STEP_SHARE / fastest_motion(loop), (_BEFORE + _AFTER) * self._time / _MOST_STEPS)
         return simulation_step(loop.sampling, longest)
 
     def _run(self, ship: TrimmedShip, track: PlannedTrack) -> TrackRun:
@@ -224,11 +224,9 @@ class CornerTrial:
     def _record(self, run: TrackRun, track: PlannedTrack) -> Record:
         """Return position, heading, rudder and distance, the corner at the origin."""
         names, every = self.heading.ship.model.states, max(1, len(run.error) // _SAMPLES)
-        series: dict[str, Array] = {name: run.states[:, names.index(name)] for name in ("x0", "y0", "psi")}
+        series: dict[str, Array] = {name: run.states[::every, names.index(name)] for name in ("x0", "y0", "psi")}
         series["x0"] = series["x0"] - track.corner
-        series[self.heading.ship.actuator] = run.actuator
-        channels = {n: Channel.from_notation(n, frozen(np.ascontiguousarray(v[::every]))) for n, v in series.items()}
-        channels[ERROR] = Channel(frozen(np.ascontiguousarray(run.error[::every])), "m", "body", "starboard")
-        time = frozen(self._step * every * np.arange(len(run.error[::every])))
-        provenance = Provenance(f"line of sight around loop '{self.heading.loop.name}' at a corner")
-        return Record("corner", time, channels, RecordKind.SIMULATED, provenance=provenance)
+        series[self.heading.ship.actuator] = run.actuator[::every]
+        source = f"line of sight around loop '{self.heading.loop.name}' at a corner"
+        error = Channel(frozen(np.ascontiguousarray(run.error[::every])), "m", "body", "starboard")
+        return series_record("corner", self._step * every, series, source).with_channel(ERROR, error)

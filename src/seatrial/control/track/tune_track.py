@@ -4,7 +4,6 @@ import contextlib
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
@@ -21,12 +20,12 @@ from seatrial.control.simulation import (
 from seatrial.control.task import OUTPUT, Seaway, SlowDisturbance, TrackDemand, TrimmedShip, TuningTask
 from seatrial.control.track.paths import CURRENT, EAST, CornerTrial, HeadingLoop, Reach
 from seatrial.core.equations import Model
-from seatrial.core.equations.model import stored_model
 from seatrial.core.results.tuning import ControllerConstraints, DisturbanceSimulation, TrackKeeping
 from seatrial.core.values import Array, DivergedError, InputError, Parameter, Parameters
 from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import Block, Term, TransferLoop, margins
 from seatrial.physics.loops.autopilot import lag_frequency
+from seatrial.physics.loops.loop_states import linear_model
 from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop
 from seatrial.physics.simulate.craft_control import LineOfSight, follow_track
 
@@ -40,7 +39,7 @@ def linear_ship(ship: TrimmedShip, disturbed: str) -> Model:
     """Return x' = A x + b u + e w about the trim, without the position along the track; u, w in the notation's signs.
 
     Inputs are the actuator and ``disturbance``, which acts on the rate of the state `disturbed`, or like the actuator
-    where it has the actuator's name. Matrices are fixed parameters, so that ships share their machine code.
+    where it has the actuator's name.
     """
     linear, names = linearise(ship), ship.model.states
     kept = [i for i, name in enumerate(names) if name not in _LEFT_OUT]
@@ -49,31 +48,7 @@ def linear_ship(ship: TrimmedShip, disturbed: str) -> Model:
     b = sign * linear.B[kept, column]
     e = b if disturbed == ship.actuator else np.array([1.0 if names[i] == disturbed else 0.0 for i in kept])
     states = tuple(names[i] for i in kept)
-    model = stored_model(
-        ("linear ship", *states, ship.actuator), lambda: _model(states, ship.actuator), (Path(__file__),)
-    )
-    return model.with_values(_values(A, b, e))
-
-
-def _values(A: Array, b: Array, e: Array) -> dict[str, float]:
-    n = len(b)
-    values = {f"A_{i}_{j}": float(A[i, j]) for i in range(n) for j in range(n)}
-    return values | {f"{name}_{i}": float(row[i]) for name, row in (("b", b), ("e", e)) for i in range(n)}
-
-
-def _model(states: tuple[str, ...], actuator: str) -> Model:
-    """Return the model with all entries zero."""
-    from seatrial.core.equations import Sheet
-
-    n = len(states)
-    sheet = Sheet(f"linear_ship_{n}", "linearised about a trim", "a ship about its straight run")
-    x, u, w = sheet.states(" ".join(states)), sheet.input(actuator), sheet.input(DISTURBANCE)
-    A = [[sheet.parameter(f"A_{i}_{j}", 0.0, "", "state to rate") for j in range(n)] for i in range(n)]
-    b = [sheet.parameter(f"b_{i}", 0.0, "", "actuator to rate") for i in range(n)]
-    e = [sheet.parameter(f"e_{i}", 0.0, "", "disturbance to rate") for i in range(n)]
-    for i, state in enumerate(x):
-        sheet.rate(state, sum(A[i][j] * x[j] for j in range(n)) + b[i] * u + e[i] * w, "linearised about the trim")
-    return sheet.model()
+    return linear_model(states, (ship.actuator, DISTURBANCE), A, np.stack([b, e], axis=1), np.ones_like(A, dtype=bool))
 
 
 # A straight track kept in each disturbance: linear theory, simulated without limits and with those of the rudder.
@@ -257,7 +232,7 @@ def tune_track(
     best = _least_distance(evaluator, largest_integral_gain(task, demand))
     if not evaluator.evaluate(best[None]).is_feasible[0]:
         refuse_infeasible(evaluator, seed)
-    rate, limits = reference_rate(task, loop, task.required_demand), _limits(task)
+    rate, limits = reference_rate(task, loop, task.required_demand), task.actuator_limits.without_stall
     best = _settling(best, lambda gains: CornerTrial(heading, line_of_sight(gains, rate), limits, demand, task.U))
     KP, KI = best.tolist()
     guidance = line_of_sight((KP, KI), rate)
@@ -278,10 +253,6 @@ def tune_track(
         disturbances=tuple(trial.simulate(disturbance, seed) for disturbance in outer.disturbances),
         corner=corner.respond(closed, draws, seed),
     )
-
-
-def _limits(task: TuningTask) -> ActuatorLimits:
-    return ActuatorLimits(task.constraints.limit, task.constraints.rate)
 
 
 def _settling(gains: Array, trial: Callable[[tuple[float, float]], CornerTrial]) -> Array:

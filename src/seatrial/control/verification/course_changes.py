@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.signal import lfilter
 from scipy.special import stdtrit
 
 from seatrial.control.controller import (
@@ -21,9 +20,8 @@ from seatrial.control.task import Demand, TrimmedShip, TuningTask
 from seatrial.core.results.verification import VerifiedChange, VerifiedQuantity
 from seatrial.core.values import Array, InputError, Record, frozen
 from seatrial.core.values.notation import channel_unit
-from seatrial.physics.loops import TransferLoop, in_series
-from seatrial.physics.loops.discrete import difference_equation
-from seatrial.physics.simulate.closed_loop import ActuatorLimits, simulation_step, steps_a_sample
+from seatrial.physics.loops import Block, TransferLoop
+from seatrial.physics.simulate.closed_loop import fastest_motion, simulation_step, steps_a_sample
 
 # Changes of an ordered output in a log, and what weather did to the ship while the order stood still.
 
@@ -52,6 +50,11 @@ class LoggedChange:
     actuator: Array
     trim: float
     is_step: bool
+
+    @property
+    def time(self) -> Array:
+        """Return seconds from the order on, (n,)."""
+        return np.asarray(self.dt * np.arange(len(self.order)), dtype=np.float64)
 
     @property
     def change(self) -> float:
@@ -122,7 +125,15 @@ def _changes_of_record(record: Record, channels: tuple[str, str, str], demand: D
     ]  # fmt: skip
 
 
-# Whether an actuator did in a log what the gains order: the controller run on what was measured.
+def smoothed(values: Array, width: int) -> Array:
+    """Return the moving mean over `width` samples, ends repeated, (n,)."""
+    if width < 2:
+        return values
+    padded = np.pad(values, (width // 2, width - 1 - width // 2), mode="edge")
+    return np.convolve(padded, np.full(width, 1.0 / width), mode="valid")
+
+
+# Whether an actuator did in a log what the gains order: the loop run on what was measured.
 
 # time constants of the demand over which means run: one that is compared, as a logger's noise is not the controller's,
 # and one that is taken off, trim and integral; chosen
@@ -186,9 +197,7 @@ def followed_gains(
 ) -> FollowedGains:
     """Return how the actuator of a log follows a loop at its own gains, over all its changes.
 
-    The order is that of the logged output and reference, by the loop's blocks at the log's samples, its servo and dead
-    time behind it, within the actuator's limits and stops; both are compared smoothed, slow means taken
-    off.
+    The loop runs on the logged output and reference; both are compared smoothed, slow means taken off.
     """
     pairs = [_order_and_motion(task, loop, change, stops) for change in changes]
     ordered, moved = (np.concatenate(rows) for rows in zip(*pairs, strict=True))
@@ -201,37 +210,62 @@ def followed_gains(
 def _order_and_motion(
     task: TuningTask, loop: TransferLoop, change: LoggedChange, stops: tuple[float, float]
 ) -> tuple[Array, Array]:
-    demand, T = task.required_demand, change.dt
-    level, fed = change.order, np.zeros(len(change.order))
-    if change.is_step:
-        motion = reference_model(change.order, T, demand.time_constant, reference_rate(task, loop, demand))
-        level, fed = motion.level, motion.fed_forward(feed_forward(loop, demand))
-    fast, slow = (max(1, round(share * demand.time_constant / T)) for share in (_FAST, _SLOW))
-    error, order = _mean(level - change.output, fast), _mean(fed, fast)
-    for gain, term in zip(loop.gain_values, loop.terms, strict=True):
-        b, a = difference_equation(in_series("term", (term.block, *loop.filters)), T)
-        order = order + gain * lfilter(b, a, error)
-    b, a = difference_equation(in_series("servo", loop.servo), T)
-    order = lfilter(b, a, order)
-    late = 0 if loop.sampling is None else round(loop.sampling.dead_time / T)
-    order = np.concatenate([np.zeros(late), order[: len(order) - late]])
-    achieved = _within(np.clip(order, *stops), task.constraints.limit, task.constraints.rate * T)
-    moved = _mean(change.actuator, fast)
-    return achieved - _mean(achieved, slow), moved - _mean(moved, slow)
+    """Return where the loop moves the actuator on what was measured, and where it was, smoothed, slow means taken off.
+
+    What was measured disturbs the output of a plant that stands still.
+    """
+    fast, slow = (max(1, round(share * task.required_demand.time_constant / change.dt)) for share in (_FAST, _SLOW))
+    still = plant_as_model(replace(loop, plant=_AT_REST, disturbance=_AT_REST))
+    run = _OrderedRun.of_change(task, loop, change)
+    error = run.level - np.interp(run.time, change.time, smoothed(change.output, fast))
+    moved = run.simulated(task, still, error)[1]
+    achieved, motion = (
+        smoothed(angle, fast) for angle in (np.clip(np.interp(change.time, run.time, moved), *stops), change.actuator)
+    )
+    return achieved - smoothed(achieved, slow), motion - smoothed(motion, slow)
 
 
-def _within(order: Array, limit: float, step: float) -> Array:
-    """Return an order as an actuator follows it from rest within its limits."""
-    positions, now = np.empty(len(order)), float(order[0])
-    for k, wanted in enumerate(np.clip(order, -limit, limit).tolist()):
-        now += min(max(wanted - now, -step), step)
-        positions[k] = now
-    return positions
+_AT_REST = Block("plant that stands still", (0.0,), (1.0, 1.0))
 
 
-def _mean(values: Array, width: int) -> Array:
-    padded = np.pad(values, (width // 2, width - 1 - width // 2), mode="edge")
-    return np.convolve(padded, np.full(width, 1.0 / width), mode="valid")
+@dataclass(frozen=True, eq=False)
+class _OrderedRun:
+    """A change in steps of a simulation: the loop without errors of its sensor, what it follows and is fed forward.
+
+    Attributes:
+        time: s from the order on; level, fed: (n,), SI.
+    """
+
+    loop: TransferLoop
+    time: Array
+    level: Array
+    fed: Array
+
+    @classmethod
+    def of_change(cls, task: TuningTask, loop: TransferLoop, change: LoggedChange) -> "_OrderedRun":
+        """Return the change as it was ordered, through the reference filter where the order jumped."""
+        loop, demand = _without_noise(loop), task.required_demand
+        dt = simulation_step(loop.sampling, min(change.dt, _STEP_SHARE / fastest_motion(loop)))
+        every = 1 if loop.sampling is None else steps_a_sample(loop.sampling, dt)
+        time = dt * np.arange(math.ceil(change.time[-1] / dt) + 1)
+        sample_time = time[::every]
+        if change.is_step:
+            places = np.ceil(sample_time / change.dt - _ROUNDING).astype(int)
+            order = change.order[np.minimum(places, len(change.order) - 1)]
+            motion = reference_model(order, every * dt, demand.time_constant, reference_rate(task, loop, demand))
+            sampled, fed = motion.level, motion.fed_forward(feed_forward(loop, demand))
+        else:
+            sampled, fed = np.interp(sample_time, change.time, change.order), np.zeros(len(sample_time))
+        return cls(loop, time, *(np.repeat(signal, every)[: len(time)] for signal in (sampled, fed)))
+
+    def simulated(self, task: TuningTask, ship: TrimmedShip, level: Array) -> tuple[Array, Array]:
+        """Return output and actuator (n,) of a ship that the loop, at its own gains, lets follow a level (n,)."""
+        limits, gains, dt = task.actuator_limits.without_stall, self.loop.gain_values, float(self.time[1])
+        return simulate_tracking(ship, self.loop, gains, limits, dt, level, self.fed)
+
+    def logged(self, values: Array, change: LoggedChange) -> Array:
+        """Return values (n,) at the samples of the log, from their first."""
+        return np.interp(change.time, self.time, values - values[0])
 
 
 # Changes of an ordered output verified: overshoot, settling and work of the actuator against ships the fit allows.
@@ -280,7 +314,7 @@ def verify_changes(task: TuningTask, gains: Array, records: Sequence[Record], se
     loop, followed = _loop_of_log(task, gains, logged)
     ship = task.trimmed_ship or plant_as_model(loop)
     ships = draw_parameters(ship, SHIPS, seed).ships
-    nominal = [_answers(task, (ship,), loop, gains, change)[0] for change in logged]
+    nominal = [_answers(task, (ship,), loop, change)[0] for change in logged]
     settling = [_judged(c, a, demand)[1] for c, a in zip(logged, nominal, strict=True)]
     backgrounds = (c.background(_SETTLED * s) for c, s in zip(logged, settling, strict=True))
     weather = [background for background in backgrounds if len(background) >= _LEAST_BACKGROUND]
@@ -290,7 +324,7 @@ def verify_changes(task: TuningTask, gains: Array, records: Sequence[Record], se
             f"the changes end before they settle, so that nothing shows what weather does; log {longest:.0f} s and "
             "some minutes after each order"
         )
-    answers = list(zip(*(_answers(task, ships, loop, gains, c) for c in logged), strict=True)) or [nominal]
+    answers = list(zip(*(_answers(task, ships, loop, c) for c in logged), strict=True)) or [nominal]
     rng = np.random.default_rng(seed)
     repeats = math.ceil(SHIPS * WEATHERS / len(answers))
     sampled = np.array([
@@ -345,31 +379,10 @@ def _loop_of_log(task: TuningTask, gains: Array, logged: Sequence[LoggedChange])
     return loops[best], followed[best]
 
 
-def _answers(
-    task: TuningTask, ships: Sequence[TrimmedShip], loop: TransferLoop, gains: Array, change: LoggedChange
-) -> list[_Answer]:
+def _answers(task: TuningTask, ships: Sequence[TrimmedShip], loop: TransferLoop, change: LoggedChange) -> list[_Answer]:
     """Return what each ship does with the change as it was ordered, without weather, by the loop as it samples."""
-    demand: Demand = task.demand  # type: ignore[assignment]
-    loop = _without_noise(loop)
-    moving = loop.closed_loop_poles if loop.sampling is None else loop.plant.poles
-    dt = simulation_step(loop.sampling, min(change.dt, _STEP_SHARE / float(np.abs(moving).max())))
-    every = 1 if loop.sampling is None else steps_a_sample(loop.sampling, dt)
-    order_time = change.dt * np.arange(len(change.order))
-    time = dt * np.arange(math.ceil(order_time[-1] / dt) + 1)
-    sample_time = time[::every]
-    if change.is_step:
-        order = change.order[np.minimum(np.ceil(sample_time / change.dt - _ROUNDING).astype(int), len(order_time) - 1)]
-        motion = reference_model(order, every * dt, demand.time_constant, reference_rate(task, loop, demand))
-        sampled, fed = motion.level, motion.fed_forward(feed_forward(loop, demand))
-    else:
-        sampled, fed = np.interp(sample_time, order_time, change.order), np.zeros(len(sample_time))
-    level, fed = (np.repeat(signal, every)[: len(time)] for signal in (sampled, fed))
-    limits = ActuatorLimits(task.constraints.limit, task.constraints.rate)
-    simulated = [simulate_tracking(ship, loop, gains, limits, dt, level, fed) for ship in ships]
-    return [
-        _Answer(np.interp(order_time, time, output - output[0]), np.interp(order_time, time, moved - moved[0]))
-        for output, moved in simulated
-    ]
+    run = _OrderedRun.of_change(task, loop, change)
+    return [_Answer(*(run.logged(signal, change) for signal in run.simulated(task, ship, run.level))) for ship in ships]
 
 
 def _without_noise(loop: TransferLoop) -> TransferLoop:
@@ -392,7 +405,7 @@ def _judged(change: LoggedChange, answer: _Answer, demand: Demand) -> tuple[floa
 
     One that never settles counts with its whole length.
     """
-    output = _smoothed(answer.output, round(_SMOOTHING * demand.time_constant / change.dt))
+    output = smoothed(answer.output, round(_SMOOTHING * demand.time_constant / change.dt))
     settled = settling_time(output, change.demand, (1,), change.dt)
     rate = np.diff(answer.actuator) / change.dt
     return (
@@ -400,14 +413,6 @@ def _judged(change: LoggedChange, answer: _Answer, demand: Demand) -> tuple[floa
         change.dt * len(change.order) if math.isnan(settled) else settled,
         float(np.sqrt(np.mean(answer.actuator**2))), float(np.sqrt(np.mean(rate**2))),
     )  # fmt: skip
-
-
-def _smoothed(values: Array, width: int) -> Array:
-    """Return the moving mean over `width` samples, ends repeated, (n,)."""
-    if width < 2:
-        return values
-    padded = np.pad(values, (width // 2, width - 1 - width // 2), mode="edge")
-    return np.convolve(padded, np.full(width, 1.0 / width), mode="valid")
 
 
 def _quantity(name: str, unit: str, sampled: Array, achieved: float) -> VerifiedQuantity:

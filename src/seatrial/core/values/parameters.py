@@ -138,7 +138,7 @@ class Parameters:
     def _with_changes(self, changes: Mapping[str, Mapping[str, object]]) -> Self:
         for name in changes:
             self.index(name)
-        return replace(self, items=tuple(replace(p, **changes.get(p.name, {})) for p in self.items))  # type: ignore[arg-type]
+        return replace(self, items=tuple(replace(p, **changes[p.name]) if p.name in changes else p for p in self.items))  # type: ignore[arg-type]
 
     def with_values(self, values: Mapping[str, float], source: str | None = None) -> Self:
         """Return the parameters with new values, and their source if given."""

@@ -19,7 +19,7 @@ from pydantic import (
 )
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import ErrorDetails
-from pydantic_core.core_schema import CoreSchema, no_info_after_validator_function
+from pydantic_core.core_schema import CoreSchema, no_info_after_validator_function, simple_ser_schema
 
 from seatrial.core.values import InputError, si_unit, spelling_hint
 
@@ -69,6 +69,13 @@ class Amount(StrictTable):
         return self.value * (si_unit(self.unit)[0] if self.unit else 1.0)
 
 
+class Quantities(StrictTable):
+    """Numbers of one unit; without one they are SI."""
+
+    values: Annotated[tuple[float, ...], Field(min_length=1)]
+    unit: Unit | None = None
+
+
 class StandardDeviation(StrictTable):
     """A standard deviation with its unit; without one it is SI."""
 
@@ -103,7 +110,9 @@ class InSi:
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         written = SiAmount if self.table is Amount else SiStandardDeviation
-        return no_info_after_validator_function(self._in_si, handler.generate_schema(written))
+        return no_info_after_validator_function(
+            self._in_si, handler.generate_schema(written), serialization=simple_ser_schema("float")
+        )
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
         return {**handler(schema), **({"x-unit": self.unit} if self.unit else {})}
@@ -117,17 +126,13 @@ class InSi:
         return amount.in_si
 
 
-# amounts that stay as they are written, with the SI unit of a bare number for schema and reference
-Metres = Annotated[SiAmount, Field(json_schema_extra={"x-unit": "m"})]
-Seconds = Annotated[SiAmount, Field(json_schema_extra={"x-unit": "s"})]
-Radians = Annotated[SiAmount, Field(json_schema_extra={"x-unit": "rad"})]
-MetresPerSecond = Annotated[SiAmount, Field(json_schema_extra={"x-unit": "m/s"})]
-RadiansPerSecond = Annotated[SiAmount, Field(json_schema_extra={"x-unit": "rad/s"})]
+Length = Annotated[float, InSi("m")]
 Speed = Annotated[float, InSi("m/s")]
 Angle = Annotated[float, InSi("rad")]
 PositiveLength = Annotated[float, InSi("m", is_positive=True)]
 PositiveDuration = Annotated[float, InSi("s", is_positive=True)]
 PositiveSpeed = Annotated[float, InSi("m/s", is_positive=True)]
+PositiveFrequency = Annotated[float, InSi("rad/s", is_positive=True)]
 PositiveAngle = Annotated[float, InSi("rad", is_positive=True)]
 Deviation = Annotated[float | None, InSi(is_positive=True, table=StandardDeviation)]
 DelayDeviation = Annotated[float | None, InSi("s", table=StandardDeviation)]  # 0: the delay is known to be none

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,9 +23,11 @@ _SAMPLES_A_PERIOD = (
 )
 _RINGING = 2.0 * (1.0 + 1e-9)  # pole times sample time beyond which Tustin's pole is negative, with rounding
 _AT_ORIGIN = 1e-9  # rad/s, below which a pole integrates: rounding
+_KEPT = 256  # difference equations kept in memory; chosen
 _STEPS = (1.0, 2.0, 5.0)  # sample times are these times a power of ten
 
 
+@lru_cache(maxsize=_KEPT)
 def difference_equation(block: Block, sample_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Return a block by Tustin's rule, s = 2 / T (z - 1) / (z + 1) (Astrom & Wittenmark 1997, section 8.3).
 

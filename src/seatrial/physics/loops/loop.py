@@ -71,12 +71,19 @@ class Block:
         """Return the block times a number."""
         return Block(self.name, tuple(factor * c for c in self.num), self.den, self.source)
 
+    def stretched(self, factor: float) -> "Block":
+        """Return P(factor s): all time constants times the factor."""
+        num, den = (
+            tuple(c * factor ** (len(side) - 1 - i) for i, c in enumerate(side)) for side in (self.num, self.den)
+        )
+        return Block(self.name, num, den, self.source)
+
 
 def in_series(name: str, blocks: Iterable[Block]) -> Block:
     """Return the product of blocks; nothing cancels."""
     num, den = np.ones(1), np.ones(1)
     for block in blocks:
-        num, den = np.polymul(num, block.num), np.polymul(den, block.den)
+        num, den = np.convolve(num, block.num), np.convolve(den, block.den)
     return Block(name, tuple(num), tuple(den))
 
 
@@ -204,7 +211,7 @@ def _held(sides: tuple[tuple[tuple[float, ...], tuple[float, ...]], ...], sampli
     response = c @ np.linalg.solve(at * np.eye(size) - E, (1.0 - at) * B) + d if size else d
     numerator = numerator * (response / (np.polyval(numerator, at) / np.polyval(denominator, at))).real
     for _ in range(whole):
-        numerator, denominator = np.polymul(numerator, [-1.0, 1.0]), np.polymul(denominator, [1.0, 1.0])
+        numerator, denominator = np.convolve(numerator, [-1.0, 1.0]), np.convolve(denominator, [1.0, 1.0])
     num, den = (_in_seconds(np.asarray(side, dtype=np.float64), T) for side in (numerator, denominator))
     scale = den[0] if den[0] else 1.0
     return Block("held", tuple((num / scale).tolist()), tuple((den / scale).tolist()))
@@ -232,6 +239,9 @@ def _split(sampling: Sampling) -> tuple[int, float]:
 
 def _stepped(A: Array, b: Array, T: float, late: float) -> tuple[Array, Array, Array]:
     """Return exp(A T), and what the order before and the one now do in a step: the former acts for `late` seconds."""
+    if not late:
+        stepped, now = held_step(A, b, T)
+        return stepped, np.zeros(len(b)), now
     first, began = held_step(A, b, late)
     second, now = held_step(A, b, T - late)
     return second @ first, second @ began, now
@@ -399,11 +409,11 @@ class TransferLoop:
         The closed loop has the characteristic polynomial d + sum gain_i n_i. Nothing cancels.
         """
         dens = list(dict.fromkeys(term.block.den for term in self.terms))
-        common = reduce(np.polymul, dens, np.array(self.chain.den))
+        common = reduce(np.convolve, dens, np.array(self.chain.den))
         numerators = np.zeros((len(self.terms), len(common)))
         for row, term in zip(numerators, self.terms, strict=True):
             others = [den for den in dens if den != term.block.den]
-            made = np.atleast_1d(reduce(np.polymul, [term.block.num, *others], np.array(self.chain.num)))
+            made = np.atleast_1d(reduce(np.convolve, [term.block.num, *others], np.array(self.chain.num)))
             row[len(row) - len(made) :] = made
         return frozen(common), frozen(numerators)
 

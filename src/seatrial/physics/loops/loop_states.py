@@ -105,17 +105,40 @@ def _identifier(name: str) -> str:
     return "".join(character if character.isalnum() else "_" for character in name)
 
 
-# State-space forms: of a block, and of a plant with its disturbance as a linear model.
+# Linear models: of any matrices, and of a plant with its disturbance.
 
 _NO_REST = 1e-12  # of the largest coefficient, below which a rest of a division is rounding
+
+
+def linear_model(states: tuple[str, ...], inputs: tuple[str, ...], A: Array, B: Array, pattern: Array) -> Model:
+    """Return x' = A x + B u as a model, A (n, n), B (n, inputs), the entries of both fixed parameters.
+
+    pattern: which entries of A there are, (n, n). Models of the same names and pattern share their machine code.
+    """
+    key = ("linear model", *states, *inputs, pattern.tolist())
+    model = stored_model(key, lambda: _written(states, inputs, pattern), (Path(__file__).parent,))
+    entries = {f"A_{i}_{j}": float(A[i, j]) for i, j in np.argwhere(pattern)}
+    return model.with_values(entries | {f"B_{i}_{j}": float(value) for (i, j), value in np.ndenumerate(B)})
+
+
+def _written(states: tuple[str, ...], inputs: tuple[str, ...], pattern: Array) -> Model:
+    """Return the model with all entries zero."""
+    from seatrial.core.equations import Sheet
+
+    sheet = Sheet(f"linear_{len(states)}", "assembled from matrices", "a plant or a ship, linear about its trim")
+    x, u = sheet.states(" ".join(states)), [sheet.input(name) for name in inputs]
+    for i, state in enumerate(x):
+        rate = [sheet.parameter(f"A_{i}_{j}", 0.0, "", "state to rate") * x[j] for j in np.flatnonzero(pattern[i])]
+        rate += [sheet.parameter(f"B_{i}_{j}", 0.0, "", "input to rate") * each for j, each in enumerate(u)]
+        sheet.rate(state, sum(rate), "linear")
+    return sheet.model()
 
 
 def plant_model(loop: TransferLoop) -> Model:
     """Return plant and disturbance of a loop as a model whose first state is the output.
 
     Inputs are the actuator and the disturbance (``disturbance`` where the loop has no symbol of its own for it).
-    Observable form over the common denominator; coefficients are fixed parameters, so that plants of one order share
-    their machine code.
+    Observable form over the common denominator (Kailath 1980, Linear Systems, section 2.1).
 
     Raises:
         InputError: plant or disturbance answers at once.
@@ -126,27 +149,12 @@ def plant_model(loop: TransferLoop) -> Model:
         raise InputError(f"the plant of loop '{loop.name}' answers at once; give the lag that every real one has")
     has_own_input = loop.disturbance_input not in ("", loop.actuator)
     inputs = (loop.actuator, loop.disturbance_input if has_own_input else "disturbance")
-    meanings = ("denominator", loop.plant.name, loop.disturbance.name)
-    key = ("linear plant", n, loop.output, *inputs, *meanings)
-    model = stored_model(key, lambda: _observable_model(n, loop.output, inputs, meanings), (Path(__file__).parent,))
-    full = [np.concatenate([np.zeros(n - len(values)), values]) for values in (den[1:], pushed, met)]
-    rows = zip("abd", full, strict=True)
-    return model.with_values({f"{letter}_{i}": float(v) for letter, row in rows for i, v in enumerate(row)})
-
-
-def _observable_model(n: int, output: str, inputs: tuple[str, str], meanings: tuple[str, str, str]) -> Model:
-    """Return the model of order n with all coefficients zero; meanings: of the coefficients a, b and d."""
-    from seatrial.core.equations import Sheet
-
-    sheet = Sheet(f"linear_plant_{n}", "assembled from the loop's blocks", "a plant known by its transfer functions")
-    x = sheet.states(" ".join([output, *(f"x_{i}" for i in range(1, n))]))
-    u, w = (sheet.input(name) for name in inputs)
-    rows = []
-    for letter, meaning in zip("abd", meanings, strict=True):
-        rows.append([sheet.parameter(f"{letter}_{i}", 0.0, "", meaning) for i in range(n)])
-    for i, (state, a, b, d) in enumerate(zip(x, *rows, strict=True)):
-        sheet.rate(state, (x[i + 1] if i + 1 < n else 0) - a * x[0] + b * u + d * w, "observable form")
-    return sheet.model()
+    A = np.diag(np.ones(max(n - 1, 0)), 1)
+    A[:, 0] = -den[1:]
+    B = np.array([np.concatenate([np.zeros(n - len(values)), values]) for values in (pushed, met)]).T
+    pattern = np.diag(np.ones(max(n - 1, 0), dtype=bool), 1)
+    pattern[:, 0] = True
+    return linear_model((loop.output, *(f"x_{i}" for i in range(1, n))), inputs, A, B, pattern)
 
 
 def _over_common_denominator(plant: Block, disturbance: Block) -> tuple[Array, Array, Array]:

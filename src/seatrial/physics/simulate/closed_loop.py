@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property, reduce
+from functools import cached_property, lru_cache, reduce
 
 import numpy as np
 
@@ -106,8 +106,16 @@ def _add_term(
 _WHOLE = 1e-6  # of a sample: a step that divides it
 _TRIED = 40  # numbers of steps a sample that are tried, for one in which the dead time is whole; chosen
 _NEAR = 0.02  # of a step: a dead time that counts as whole; chosen
+_KEPT = 64  # sensors and servos in steps kept in memory, the same for all gains; chosen
+_SLOWEST_POLE = 1e-6  # rad/s, taken for a loop without states
 _NOISE_STREAM = 12  # of random numbers, apart from those of disturbances of the same seed; chosen
 _FINEST = 0.2  # of the dead time, the longest step where there is one; chosen
+
+
+def fastest_motion(loop: TransferLoop) -> float:
+    """Return the fastest pole [rad/s] that steps of a simulation follow: of the loop, where it samples of the plant."""
+    poles = loop.closed_loop_poles if loop.sampling is None else loop.plant.poles
+    return float(np.abs(poles).max(initial=_SLOWEST_POLE))
 
 
 def simulation_step(sampling: Sampling | None, longest: float) -> float:
@@ -184,6 +192,7 @@ def _block(block: Block, T: float, gain: float, holds: float) -> Array:
     return np.concatenate([[n, gain, holds, 0.0], b, a, np.zeros(n)])
 
 
+@lru_cache(maxsize=_KEPT)
 def _sensor(block: Block, dt: float) -> tuple[Array, int]:
     """Return a sensor for an input that runs straight over each step (Franklin, Powell & Workman 1998, section 6.3)."""
     A, b, c, d = controllable_form(block)
@@ -192,6 +201,7 @@ def _sensor(block: Block, dt: float) -> tuple[Array, int]:
     return np.concatenate([E.T.ravel(), before, after, c, [d], np.zeros(2 * n + 1)]), n
 
 
+@lru_cache(maxsize=_KEPT)
 def _servo(block: Block, dt: float) -> tuple[Array, int]:
     """Return a servo for an input that is held over each step."""
     A, b, c, d = controllable_form(block)

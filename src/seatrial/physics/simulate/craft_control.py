@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -199,6 +199,16 @@ class StationRun:
     given: Array
     states: Array
 
+    @property
+    def distance(self) -> Array:
+        """Distance from the station [m], (n,)."""
+        return np.hypot(self.north, self.east)
+
+    def after(self, first: int) -> "StationRun":
+        """Return the run from a sample on."""
+        rows = {name: getattr(self, name)[first:] for name in ("north", "east", "heading", "thrust", "given")}
+        return replace(self, **rows)
+
 
 def filter_coefficients(lag: Array, sample: float) -> tuple[Array, Array]:
     """Return a, b of v[k] = a v[k-1] + b (x[k] - x[k-1]): s / (lag s + 1) by Tustin's rule; each (3,)."""
@@ -206,30 +216,30 @@ def filter_coefficients(lag: Array, sample: float) -> tuple[Array, Array]:
 
 
 def keep_station(
-    model: Model, controller: StationController, resting: Array, drift: Array, forces: Array, seed: int = 0
+    model: Model, controller: StationController, resting: Array, pushes: Array, seed: int = 0
 ) -> StationRun:
     """Return the run of a craft, from rest at its station, in water that moves and under forces from outside.
 
     Args:
         model: of `with_outside_forces`, without a current of its own.
         resting: inputs with all commands at rest, without the outside forces, (nu - 3,).
-        drift: how far the water has gone north and east at each step [m], (2, n).
-        forces: X, Y, N from outside held over each step, (3, n), in the model's unit.
+        pushes: how far the water has gone north and east at each step [m]; X, Y, N from outside held over each step, in
+            the model's unit; (5, n).
         seed: of the compass's noise.
 
     Raises:
         DivergedError: the craft runs away.
     """
-    dt, count = controller.dt, drift.shape[1]
-    pushes = np.concatenate([drift, forces, sample_noise(controller.sampling, count, seed)[None]])
-    memory, series = _memory(model, controller, dt, pushes)
+    dt, count = controller.dt, pushes.shape[1]
+    noise = sample_noise(controller.sampling, count, seed)
+    memory, series = _memory(model, controller, dt, np.concatenate([pushes, noise[None]]))
     inputs = np.concatenate([resting, np.zeros(len(OUTSIDE_FORCES))])
     at_rest = np.zeros(len(model.states))
     states, _ = commanded(model, keeper.station_keeper, memory, dt, count, at_rest, inputs, "a station")
     rows = memory[series + keeper.DISTURBANCES * count :].reshape(-1, count)
     place = model.states.index
     return StationRun(
-        dt, states[:, place("x0")] + drift[0], states[:, place("y0")] + drift[1], states[:, place("psi")].copy(),
+        dt, states[:, place("x0")] + pushes[0], states[:, place("y0")] + pushes[1], states[:, place("psi")].copy(),
         rows[2:-1:3].T.copy(), rows[-1].copy(), states[-1].copy(),
     )  # fmt: skip
 

@@ -105,6 +105,19 @@ def record_of(
     return Record(name, frozen(time), channels, kind)
 
 
+def series_record(
+    name: str, dt: float, series: Mapping[str, Array], source: str, like: Mapping[str, str] | None = None
+) -> Record:
+    """Return series (n,) by symbol, every dt [s] from 0, as a simulated record in the notation table's signs.
+
+    like: symbol of the notation that a series has unit and direction of, where it is not its own.
+    """
+    kinds = {symbol: symbol for symbol in series} | dict(like or {})
+    channels = {symbol: _channel(kinds[symbol], np.ascontiguousarray(values)) for symbol, values in series.items()}
+    time = frozen(dt * np.arange(len(next(iter(series.values())))))
+    return Record(name, time, channels, RecordKind.SIMULATED, provenance=Provenance(source))
+
+
 def _channel(symbol: str, values: Array) -> Channel:
     if symbol in NOTATION:
         return Channel.from_notation(symbol, values)

@@ -3,13 +3,13 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.equations.model import RUDDER
 from seatrial.core.values import NOTATION, Array, Index, InputError, Record, spelling_hint
+from seatrial.numerics.kernels.integrate import evaluate
 from seatrial.numerics.local_polynomials import smoothed_locally
 from seatrial.physics.sensors.measured_outputs import is_late
 from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch, error_over_range, sufficient_substeps
@@ -190,13 +190,18 @@ def approach_speed(model: Model, held: Array) -> float:
         return float(rates[place])
 
     speeds = np.geomspace(1e-3, _MAX_SPEED, 60)  # m/s; grid that brackets the speed; chosen
-    for low, high in pairwise(speeds):
-        if surge(low) > 0.0 >= surge(high):
-            return float(brentq(surge, low, high, xtol=1e-12))  # m/s of rounding; chosen
-    raise InputError(
-        f"model '{model.name}' has no steady speed ahead with these inputs; state the approach speed in m/s: "
-        "--speed on the command line, speed= in Python"
-    )
+    states, inputs = np.tile(state, (len(speeds), 1)), np.tile(held, (len(speeds), 1))
+    states[:, place] = speeds
+    table = np.empty_like(states)
+    evaluate(model.compiled.rates, states, inputs, parameters, 0.0, table)
+    gains = table[:, place] > 0.0
+    balanced = np.flatnonzero(gains[:-1] & (table[1:, place] <= 0.0))
+    if not balanced.size:
+        raise InputError(
+            f"model '{model.name}' has no steady speed ahead with these inputs; state the approach speed in m/s: "
+            "--speed on the command line, speed= in Python"
+        )
+    return float(brentq(surge, *speeds[balanced[0] : balanced[0] + 2], xtol=1e-12))  # m/s of rounding; chosen
 
 
 def balancing_input(model: Model, held: Array, name: str, speed: float) -> float:
