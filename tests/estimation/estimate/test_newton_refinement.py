@@ -5,6 +5,7 @@ import pytest
 from scipy.optimize import BFGS
 
 from seatrial.core.values import Array
+from seatrial.estimation.estimate import newton_refinement
 from seatrial.estimation.estimate.newton_refinement import step_within, with_curvature
 from seatrial.numerics.optimise import NormalEquations
 
@@ -65,3 +66,36 @@ def test_no_step_is_taken_where_the_scaled_information_overflows() -> None:
     room = np.full(3, -np.inf), np.full(3, np.inf)
     step, left = step_within(room, quadratic(hollow))
     assert not step.any() and left == np.inf
+
+
+class NarrowValley:
+    """Half the square of the distance from `least` by an information whose axes differ a thousandfold in length."""
+
+    class runs:
+        size = 2
+
+    least, lower, upper = np.array([2.0, 1.0]), np.full(2, -np.inf), np.full(2, np.inf)
+    axes = np.array([[0.8, -0.6], [0.6, 0.8]])
+    information = axes @ np.diag([1e4, 1e-2]) @ axes.T
+
+    def cost(self, point: Array, _: Array) -> float:
+        return 0.5 * float((point - self.least) @ self.information @ (point - self.least))
+
+    def normal(self, point: Array, local: Array) -> NormalEquations:
+        """A gradient that points the wrong way along the valley, as differences across it may."""
+        wrong = 0.5 * self.axes[:, 1]
+        gradient = self.information @ (point - self.least) - wrong
+        no_local = np.zeros((0, 0)), np.zeros((0, 0, 0)), np.zeros((0, 2, 0))
+        return NormalEquations(self.cost(point, local), gradient, self.information, *no_local)
+
+
+def test_where_the_gradient_errs_in_a_narrow_valley_the_cost_leads_to_its_least() -> None:
+    valley, start = NarrowValley(), np.array([2.0, 1.0]) + 30.0 * NarrowValley.axes[:, 1]
+    normal = valley.normal(start, np.zeros((0, 0)))
+    room = np.full(2, -np.inf), np.full(2, np.inf)
+    left = step_within(room, normal)[1]
+    stalled = newton_refinement._Descent(start, normal, 3, left)
+    end = newton_refinement._along_axes(valley, stalled)  # pyright: ignore[reportArgumentType] # of a problem what is used
+    assert normal.cost > 4.0 and left > 1.0
+    assert end.normal.cost < 1e-6 and end.decrement < 0.02
+    np.testing.assert_allclose(end.point, valley.least, atol=0.02)

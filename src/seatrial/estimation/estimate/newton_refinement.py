@@ -26,6 +26,9 @@ _DETERMINED = 2.0  # standard errors above zero from which on a variance is sear
 _FARTHEST = 2.0  # logarithm of the factor by which one step changes a size or time at most; chosen
 # how often steps of differences are renewed at most, and the factor by which they are wrong then; chosen
 _RENEWALS, _WRONG_STEPS = 2, 3.0
+# along the principal axes: rounds at most, standard errors of values to either side and of the farthest step, and the
+# least information on an axis over the largest of an unknown (a longer one is not determined); chosen
+_ROUNDS, _ASIDE, _FARTHEST_ASIDE, _LEAST_INFORMATION = 5, 0.3, 4.0, 1e-6
 # the filter eliminates initial states: there are no local unknowns
 _NO_INITIAL_STATES = np.zeros((0, 0))
 
@@ -33,21 +36,23 @@ _NO_INITIAL_STATES = np.zeros((0, 0))
 def refine_by_newton(problem: PredictionError, optimum: Optimum) -> tuple[PredictionError, Optimum, float]:
     """Take quasi-Newton steps by the exact gradient, none where it vanishes; return the decrement that is left, too.
 
-    Differences to one side lead near the optimum at half the cost; those to both sides have the last word. Where the
-    search went so far that the steps of differences no longer suit, it goes on with new ones.
+    Differences to one side lead near the optimum at half the cost, with new steps where the search went so far that
+    theirs no longer suit; those to both sides have the last word. Where they stall, as in a valley so narrow that
+    errors of the gradient lead out of it, the cost itself is asked along the principal axes.
     """
-    point = optimum.solution.point
-    used = problem.difference_steps(point, optimum.normal.hessian)
-    exact = replace(problem, steps=used)
-    near = _descend(replace(exact, is_one_sided=True), point, 0)
-    end = _descend(exact, near.point, near.count)
+    steps = problem.difference_steps(optimum.solution.point, optimum.normal.hessian)
+    near = _descend(replace(problem, steps=steps, is_one_sided=True), optimum.solution.point, 0)
     for _ in range(_RENEWALS):
-        steps = problem.difference_steps(end.point, end.normal.hessian)
+        used, steps = steps, problem.difference_steps(near.point, near.normal.hessian)
         is_wrong = np.abs(np.log(steps / np.where(used > 0.0, used, steps))) > np.log(_WRONG_STEPS)
         if not np.any(is_wrong & (problem.lower < problem.upper)):
+            steps = used
             break
-        used, exact = steps, replace(problem, steps=steps)
-        end = _descend(exact, end.point, end.count)
+        near = _descend(replace(problem, steps=steps, is_one_sided=True), near.point, near.count)
+    exact = replace(problem, steps=steps)
+    end = _descend(exact, near.point, near.count)
+    if end.decrement > NEAR_ENOUGH:
+        end = _along_axes(exact, end)
     slope = end.decrement
     solution = replace(
         optimum.solution, point=end.point, value=end.normal.cost,
@@ -151,6 +156,50 @@ def _best_along(
         if costs[best] < cost:
             return trials[best]
     return None
+
+
+def _along_axes(problem: PredictionError, end: _Descent) -> _Descent:
+    """Go to the least of the parabola along each principal axis of the information, until a round gains little.
+
+    Parabolas are through three values of the cost: where an axis is long, they see what slopes by short differences
+    miss (Brent 1973, Algorithms for minimization without derivatives, chapter 7). The decrement is what the last round
+    gained.
+    """
+    point, cost, gain = end.point, end.normal.cost, np.inf
+    for _ in range(_ROUNDS):
+        normal = problem.normal(point, _NO_INITIAL_STATES) if point is not end.point else end.normal
+        coordinates = _Coordinates.near(problem, point, normal.hessian)
+        before = cost
+        for axis in _principal_axes(coordinates.normal(normal, point).hessian):
+            point, cost = _least_along(problem, coordinates, point, cost, axis)
+        gain = before - cost
+        if gain <= NEAR_ENOUGH:
+            break
+    return _Descent(point, problem.normal(point, _NO_INITIAL_STATES), end.count, gain)
+
+
+def _principal_axes(hessian: Array) -> Array:
+    """Return the principal axes of an information matrix in the unknowns' own scales, each a standard error long."""
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-300))  # above zero, for a division
+    values, vectors = np.linalg.eigh(hessian * scale[:, None] * scale)
+    return (vectors * scale[:, None] / np.sqrt(np.maximum(values, _LEAST_INFORMATION))).T
+
+
+def _least_along(
+    problem: PredictionError, coordinates: _Coordinates, point: Array, cost: float, axis: Array
+) -> tuple[Array, float]:
+    """Return the least of a point, two beside it along an axis and the least of the parabola through them."""
+
+    def at(share: float) -> tuple[float, Array]:
+        moved = np.clip(coordinates.moved(point, share * axis), problem.lower, problem.upper)
+        return problem.cost(moved, _NO_INITIAL_STATES), moved
+
+    sides = [at(-_ASIDE), at(_ASIDE)]
+    curvature, slope = (sides[0][0] + sides[1][0] - 2.0 * cost) / _ASIDE**2, (sides[1][0] - sides[0][0]) / 2.0 / _ASIDE
+    is_bowl = np.isfinite(slope) and curvature > 0.0
+    least = [at(float(np.clip(-slope / curvature, -_FARTHEST_ASIDE, _FARTHEST_ASIDE)))] if is_bowl else []
+    best = min([*sides, *least], key=lambda one: one[0])
+    return (best[1], best[0]) if best[0] < cost else (point, cost)
 
 
 def with_curvature(hessian: Array, moved: Array, gradient_change: Array) -> Array:
