@@ -190,14 +190,14 @@ def _least_along(
 ) -> tuple[Array, float]:
     """Return the least of a point, two beside it along an axis and the least of the parabola through them."""
 
-    def at(share: float) -> tuple[float, Array]:
+    def beside(share: float) -> tuple[float, Array]:
         moved = np.clip(coordinates.moved(point, share * axis), problem.lower, problem.upper)
         return problem.cost(moved, _NO_INITIAL_STATES), moved
 
-    sides = [at(-_ASIDE), at(_ASIDE)]
+    sides = [beside(-_ASIDE), beside(_ASIDE)]
     curvature, slope = (sides[0][0] + sides[1][0] - 2.0 * cost) / _ASIDE**2, (sides[1][0] - sides[0][0]) / 2.0 / _ASIDE
     is_bowl = np.isfinite(slope) and curvature > 0.0
-    least = [at(float(np.clip(-slope / curvature, -_FARTHEST_ASIDE, _FARTHEST_ASIDE)))] if is_bowl else []
+    least = [beside(float(np.clip(-slope / curvature, -_FARTHEST_ASIDE, _FARTHEST_ASIDE)))] if is_bowl else []
     best = min([*sides, *least], key=lambda one: one[0])
     return (best[1], best[0]) if best[0] < cost else (point, cost)
 
