@@ -43,6 +43,7 @@ from seatrial.numerics.optimise import (
     Status,
     levenberg_marquardt,
 )
+from seatrial.physics.sensors.measured_outputs import is_late
 from seatrial.physics.sensors.wave_motion import motion_of
 
 KINEMATIC_STATES = ("psi", "phi", "theta", "x0", "y0", "z0", "z")
@@ -314,7 +315,7 @@ def fit_prediction_error(
     Args:
         estimate: over segments or whole runs; its robust loss is not kept, outliers must be gone.
         known_noise: standard deviations of channels that are not estimated, SI.
-        driven_states: states with process noise; empty: all that are no kinematics.
+        driven_states: states with process noise; empty: all that are no kinematics and no filter of an instrument.
         further_starts: points of the same problem, of which the search starts from the likeliest: disturbances and
             feedback can lead output error far astray.
         thorough: search the coefficients even where the innovations cannot become white.
@@ -412,7 +413,7 @@ def initial_problem(
             start[:, i] = local[:, m]
             # a tenth of the largest, SI; chosen
             variance[:, i] = max(np.std(column), 0.1 * np.max(np.abs(column)), 1e-3) ** 2
-    chosen = driven_states or tuple(s for s in problem.starts if s not in KINEMATIC_STATES)
+    chosen = driven_states or tuple(s for s in problem.starts if s not in KINEMATIC_STATES and not is_late(s))
     for state in chosen:
         if state not in problem.starts:
             raise InputError(
