@@ -49,11 +49,12 @@ def main(site: Path) -> int:
     wide, cells = [], []
     with tempfile.TemporaryDirectory() as name, sync_playwright() as playwright, ExitStack() as served:
         opened = playwright.chromium.launch(executable_path=browser, args=OPTIONS)
-        addresses = _addresses(site) | _written_pages(Path(name)) | served.enter_context(_live_pages(Path(name), opened))
+        live = served.enter_context(_live_pages(Path(name), opened))
+        addresses = {**_addresses(site), **_written_pages(Path(name)), **live}
         for scheme in ("light", "dark"):
             for width, height, shown in zip(WIDTHS, HEIGHTS, SHOWN, strict=True):
+                page = opened.new_page(viewport={"width": width, "height": height}, color_scheme=scheme)
                 for kind, address in addresses.items():
-                    page = opened.new_page(viewport={"width": width, "height": height}, color_scheme=scheme)
                     page.goto(address, wait_until="load")
                     if not address.startswith("file:"):
                         page.wait_for_timeout(SETTLED_MS)
@@ -62,7 +63,7 @@ def main(site: Path) -> int:
                     cells.append((kind, scheme, width, picture, shown))
                     if page.evaluate("document.documentElement.scrollWidth") > width:
                         wide.append(f"{kind} at {width} px")
-                    page.close()
+                page.close()
         sheet = opened.new_page(viewport={"width": 2 * sum(SHOWN) + 60, "height": 900})
         paper = Path(name) / "sheet.html"
         paper.write_text(_sheet(cells), encoding="utf-8")

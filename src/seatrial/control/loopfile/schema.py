@@ -245,13 +245,15 @@ class ControllerTable(StrictTable):
         kind: `yu2014`: rate gyro, preamplifier and three terms of Yu et al. 2014; `pid`: KP + KI / s + KD s / (T s + 1)
             on the output error, positive gains oppose the motion; `blocks`: terms one by one.
         preamplifier: of `yu2014`: 30 s / (30 s + 1), the usual rate-gyro law, or 1 / (30 s + 1) as the paper has it.
-        parts: of `pid`: which of the three; None: those with gains named, else `KP` and `KI` for a speed and all for others.
+        parts: of `pid`: which of the three; None: those with gains named, else `KP` and `KI` for a speed, all for
+            others.
         derivative_filter: of `pid`: T, half a sample at least, since a shorter one rings; None: a tenth of the fastest
             loop's time.
         sample_s: sample time on board, whose hold is in every margin and simulation; None: 30 samples a period of the
             frailest frequency.
         sensor: blocks between output and terms.
-        terms: of `blocks`: gain and transfer function of each; filters: blocks common to all terms, notches for example.
+        terms: of `blocks`: gain and transfer function of each.
+        filters: blocks common to all terms, notches for example.
         gains: bounds or value of each; None: the published bounds of `yu2014`, those of the plant's poles for `pid`.
     """
 
@@ -316,8 +318,8 @@ class ActuatorTable(StrictTable):
         stall: fin angle beyond which lift is lost, in simulation.
         dead_time: from the order to the servo, without the sampling; it is in every margin and simulation, and as long
             again is to be tolerated; None: 0.
-        log: record or trial file with the angle (`delta`) and its order (`delta_ref`): gives `rate`, `dead_time` and lag
-            that do not stand here, with intervals.
+        log: record or trial file with the angle (`delta`) and its order (`delta_ref`): gives `rate`, `dead_time` and
+            lag that do not stand here, with intervals.
         inertia: of all fins or rudders about their stocks, for the energy; efficiency: of their drive.
         area: of all fins or rudders, for the drag; aspect_ratio: the effective one, twice the geometric one at a hull.
         servo: blocks from the order to the actuator; None: for `yu2014` its own.
@@ -398,8 +400,8 @@ class ObjectiveTable(StrictTable):
     """One entry of `minimise`, or a name alone: what is to be small.
 
     Attributes:
-        name: variances of the output and the actuator and of their rates, `roll` and `fin` where these are meant; others
-            in the table of the page.
+        name: variances of the output and the actuator and of their rates, `roll` and `fin` where these are meant;
+            others in the table of the page.
         height: of a standing person's centre of gravity above the axis, for interruptions; friction: of shoe and deck.
         lever: of sickness by roll, off the axis.
         x: of what heave and pitch do at a point, forward of the origin.
