@@ -1,14 +1,24 @@
 """One picture of every kind of page, to be looked at before a release; `make docs` makes it.
 
 `python docs/contact_sheet.py SITE` writes SITE/contact-sheet.png: each kind at a desk's and a telephone's width, on a
-light and a dark screen. Pages that are wider than a telephone are named. It needs Chromium and playwright, and says so
-where one is missing.
+light and a dark screen. Beside the pages of SITE stand those that commands write, of results that the tests keep, and
+the workspace over the logs of the examples, on shore and on board. Pages that are wider than a telephone are named. It
+needs Chromium and playwright, and says so where one is missing.
 """
 
 import shutil
 import sys
 import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+from seatrial import api
+from seatrial.workspace import workspace_beside
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 KINDS = (
     "index", "install", "ten-minutes", "tutorials/one-ship", "tutorials/usv", "tune", "logs", "believe", "workspace",
@@ -20,31 +30,34 @@ KINDS = (
 WIDTHS = (1400, 390)  # px, of a desk and of a telephone
 HEIGHTS = (900, 844)  # px, of the first screen
 SHOWN = (420, 150)  # px, width of each on the sheet
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
-OPTIONS = ["--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking"]
+RESULTS = Path(__file__).parents[1] / "tests" / "data" / "folder" / "earlier_results"
+SETTLED_MS = 2000  # until a page that asks its server has drawn what it was sent; chosen
 
 
 def main(site: Path) -> int:
     """Photograph the pages and lay them on one sheet; return 1 where a page is cut on a telephone."""
-    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
     try:
+        from photograph_workspace import BROWSERS, OPTIONS
         from playwright.sync_api import sync_playwright
     except ImportError:
-        browser = None
+        print("no contact sheet: it needs pip install playwright")
+        return 0
+    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
     if browser is None:
-        print("no contact sheet: it needs Chromium, and pip install playwright")
+        print("no contact sheet: it needs Chromium")
         return 0
     wide, cells = [], []
-    with tempfile.TemporaryDirectory() as name, sync_playwright() as playwright:
+    with tempfile.TemporaryDirectory() as name, sync_playwright() as playwright, ExitStack() as served:
         opened = playwright.chromium.launch(executable_path=browser, args=OPTIONS)
+        live = served.enter_context(_live_pages(Path(name), opened))
+        addresses = {**_addresses(site), **_written_pages(Path(name)), **live}
         for scheme in ("light", "dark"):
             for width, height, shown in zip(WIDTHS, HEIGHTS, SHOWN, strict=True):
                 page = opened.new_page(viewport={"width": width, "height": height}, color_scheme=scheme)
-                for kind in KINDS:
-                    source = site / f"{kind}.html"
-                    if not source.exists():
-                        continue
-                    page.goto(source.resolve().as_uri(), wait_until="load")
+                for kind, address in addresses.items():
+                    page.goto(address, wait_until="load")
+                    if not address.startswith("file:"):
+                        page.wait_for_timeout(SETTLED_MS)
                     picture = Path(name) / f"{kind.replace('/', '-')}-{width}-{scheme}.png"
                     page.screenshot(path=picture)
                     cells.append((kind, scheme, width, picture, shown))
@@ -61,6 +74,35 @@ def main(site: Path) -> int:
     for text in sorted(set(wide)):
         print(f"wider than its window: {text}")
     return int(bool(wide))
+
+
+def _addresses(site: Path) -> dict[str, str]:
+    """Return the address of each kind that the site has."""
+    paths = {kind: (site / f"{kind}.html").resolve() for kind in KINDS}
+    return {kind: path.as_uri() for kind, path in paths.items() if path.exists()}
+
+
+def _written_pages(folder: Path) -> dict[str, str]:
+    """Write the page of each kind of result, and the poster of the fit, and return their addresses."""
+    pages = {path.name: api.report(path, folder / f"{path.name}.html") for path in sorted(RESULTS.iterdir())}
+    pages["poster"] = api.write_poster(api.poster(api.load_fit(RESULTS / "fit")), folder / "poster.html")
+    return {kind: path.as_uri() for kind, path in pages.items()}
+
+
+@contextmanager
+def _live_pages(folder: Path, opened: "Browser") -> Iterator[Mapping[str, str]]:
+    """Serve the workspace of a ship and of a craft whose log is followed, and yield their addresses."""
+    from photograph_workspace import follow_log, followed_craft, ship_of_examples
+
+    with (
+        workspace_beside(ship_of_examples(folder)) as (_, ashore),
+        workspace_beside(followed_craft(folder)) as (_, on_board),
+    ):
+        window = opened.new_page()
+        window.goto(on_board)
+        follow_log(window)
+        window.close()
+        yield {"workspace: logs": ashore, "workspace: on board": f"{on_board}#onboard"}
 
 
 def _sheet(cells: list[tuple[str, str, int, Path, int]]) -> str:

@@ -10,7 +10,6 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from contact_sheet import BROWSERS, OPTIONS
 from PIL import Image
 from playwright.sync_api import Page, sync_playwright
 
@@ -22,6 +21,8 @@ PICTURES, EXAMPLES = REPOSITORY / "docs" / "pictures", REPOSITORY / "examples"
 LENGTH = 62.0  # m, of the ship of the examples, as the README has it
 VIEWPORT = {"width": 1100, "height": 760}  # px
 COLOURS = 64  # of a picture, so that it stays small; chosen
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+OPTIONS = ["--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking"]
 
 
 def main() -> None:
@@ -32,7 +33,7 @@ def main() -> None:
         return
     with tempfile.TemporaryDirectory() as name, sync_playwright() as playwright:
         opened = playwright.chromium.launch(executable_path=browser, args=OPTIONS)
-        for trial, walk in ((_ship(Path(name)), _walk), (_craft(Path(name)), _walk_on_board)):
+        for trial, walk in ((ship_of_examples(Path(name)), _walk), (followed_craft(Path(name)), _walk_on_board)):
             with workspace_beside(trial) as (_, address):
                 window = opened.new_page(viewport=VIEWPORT)
                 window.goto(address)
@@ -41,7 +42,7 @@ def main() -> None:
         opened.close()
 
 
-def _ship(parent: Path) -> Path:
+def ship_of_examples(parent: Path) -> Path:
     """Draft the ship of the examples in a folder of its own, and return the trial file."""
     folder = parent / "ship"
     folder.mkdir()
@@ -51,7 +52,7 @@ def _ship(parent: Path) -> Path:
     return folder / "trial.toml"
 
 
-def _craft(parent: Path) -> Path:
+def followed_craft(parent: Path) -> Path:
     """Copy the craft that is followed in the examples, and return the trial file."""
     shutil.copytree(EXAMPLES / "waterjet", parent / "craft" / "waterjet")
     return Path(shutil.copy(EXAMPLES / "waterjet_follow.toml", parent / "craft"))
@@ -77,12 +78,17 @@ def _walk(window: Page) -> None:
 
 def _walk_on_board(window: Page) -> None:
     """An estimate that grows."""
+    follow_log(window)
+    _keep(window, "onboard")
+
+
+def follow_log(window: Page) -> None:
+    """Follow the log of the craft until most of it is read."""
     window.get_by_role("heading", name="Columns").wait_for()
     window.locator("#steps a[data-view='onboard']").click()
     window.get_by_role("button", name="Follow", exact=True).click()
     window.get_by_text("following", exact=True).first.wait_for(timeout=60_000)  # ms
     window.wait_for_timeout(15_000)  # ms, until most of the log is read; chosen
-    _keep(window, "onboard")
 
 
 def _keep(window: Page, view: str) -> None:

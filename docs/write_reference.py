@@ -31,9 +31,9 @@ NOTATION_START, NOTATION_END = "<!-- written by write_reference.py -->", "<!-- e
 NOTATION_HEAD = ("symbol", "meaning", "unit", "frame", "positive")
 KEYS = """# {title}
 
-From the schema of the file; [its page]({page}) has examples, and meanings where none stands here. An *amount* is a
-number in the SI unit shown, or a table with a unit of its own: `{{ value = 22, unit = "deg" }}`. {unit}Where no default
-is shown nothing is assumed, or it follows from what else is given.
+From the schema of the file; [its page]({page}) has examples. An *amount* is a number in the SI unit
+shown, or a table with a unit of its own: `{{ value = 22, unit = "deg" }}`. {unit}Where no default is shown nothing is
+assumed, or it follows from what else is given.
 
 """
 HEAD = """# Command line

@@ -396,7 +396,6 @@ def _best_of(evaluator: GainEvaluator, tried: list[Array]) -> Array:
 # Numerical Optimization, section 12.3), so that the last bits of another machine's sums leave the gains as they are.
 
 _ACTIVE, _AT_BOUND = 1e-5, 1e-7  # excess, and share of a range, within which a restriction is first held; chosen
-_NO_INTEGRAL = 1e-9  # share of a range in the place of zero where a loop needs the gain to be stable; chosen
 _CURVATURE_STEP = 1e-5  # of a range, of the differences of slopes; the cube root of rounding
 _NEWTON_STEPS, _WORKING_SETS = 30, 12  # at most; chosen
 _CONVERGED = 1e-9  # share of a range of a step that is rounding
@@ -484,8 +483,6 @@ def polished_gains(evaluator: GainEvaluator, start: Array) -> Array | None:
     x = (start[places] - low) / (high - low)
     bound = np.where(x <= _AT_BOUND, -1, np.where(x >= 1.0 - _AT_BOUND, 1, 0))
     x = np.where(bound < 0, 0.0, np.where(bound > 0, 1.0, x))
-    if not problem.is_regular(x):  # an integrator without a gain is no loop
-        x[bound < 0] = _NO_INTEGRAL
     if not problem.is_regular(x):
         return None
     held = problem.slopes(x)[1] > -_ACTIVE

@@ -419,7 +419,7 @@ class ParameterDraws:
 
     def stable_ships(self, loop: TransferLoop, gains: Array) -> tuple[bool, ...]:
         """Return for each ship whether gains (g,) stabilise it, on the straight course and starting either turn."""
-        rows = [d + gains @ n for d, n in (one.polynomials for one in loops_drawn(loop, self))]
+        rows = [np.add(*one.fraction(gains)) for one in loops_drawn(loop, self)]
         stable = iter([is_hurwitz(np.ascontiguousarray(row), len(row) - 1) for row in rows])
         return tuple(all(list(islice(stable, len(plants)))) for plants in self.plants)
 

@@ -246,9 +246,11 @@ _OneOrMore = Field(min_length=1), BeforeValidator(_amounts, json_schema_input_ty
 @raises_input_error
 @dataclass(frozen=True, config=STRICT_FIELDS)
 class ScheduleGrid:
-    """`[schedule]`: speeds U [m/s], headings beta [rad], significant heights [m]; every combination gets its own gains.
+    """`[schedule]`: every combination gets its own gains, in the first sea's spectrum.
 
-    largest_step: of a gain between neighbouring conditions, as a share of the larger one.
+    Attributes:
+        speeds: of the ship, m/s; headings: to the waves, 0 following, rad; heights: significant heights, m.
+        largest_step: of a gain between neighbouring conditions, as a share of the larger one.
     """
 
     speeds: Annotated[tuple[PositiveSpeed, ...], *_OneOrMore]
@@ -330,6 +332,9 @@ class ActuatorSpread:
     """`[uncertainty.actuator]`: shares by which rate, dead time and stall may differ from what is declared.
 
     Controllers are ranked with actuators drawn from it; what a log of the actuator shows has the log's interval.
+
+    Attributes:
+        rate: of the largest rate; dead_time: of the dead time; stall: of the angle of stall.
     """
 
     rate: Share = 0.2  # of the largest rate; chosen
@@ -365,7 +370,9 @@ class PlantUncertainty:
     """`[uncertainty]`: how far a ship may differ from the model, and its actuator from what is declared.
 
     Attributes:
-        gain, time: shares of the plant's gain and time constants; dead_time: s, the longest; None: as declared.
+        gain, time: share by which the plant's gain, and all its time constants, may differ, either way.
+        dead_time: that may be added, the longest; None: as declared.
+        actuator: that of each sea of the ranking is drawn from these shares; results have the declared one.
     """
 
     gain: Share = 0.2  # share of the plant's gain; chosen

@@ -98,8 +98,8 @@ def station_section(station: StationKeeping | None) -> Section:
     pictures = (
         Picture(lambda: footprint_figure(station), FOOTPRINT_CAPTION),
         Picture(lambda: capability_figure(station), CAPABILITY_CAPTION),
-        Picture(lambda: front_figure(station), FRONT_CAPTION),
     )
+    front = (Picture(lambda: front_figure(station), FRONT_CAPTION),)
     return Section(
         "Station keeping",
         "station",
@@ -107,8 +107,9 @@ def station_section(station: StationKeeping | None) -> Section:
         note=note,
         pictures=pictures,
         parts=(
-            Section("Gains of station keeping", table=gains, level=Level.DETAIL),
-            Section("Thrusters", table=plain_table(head, thruster_rows(station)), level=Level.DETAIL),
+            Section("Error over thrust", pictures=front, level=Level.PAGE, is_folded=True),
+            Section("Gains of station keeping", table=gains, level=Level.DETAIL, is_folded=True),
+            Section("Thrusters", table=plain_table(head, thruster_rows(station)), level=Level.DETAIL, is_folded=True),
         ),
     )
 

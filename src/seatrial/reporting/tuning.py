@@ -192,9 +192,14 @@ def _margins(tuning: Tuning) -> Section:
     pictures = (
         Picture(lambda: svg(sensitivity_chart(tuning)), _SENSITIVITY_CAPTION),
         Picture(lambda: svg(bode_chart(tuning)), _BODE_CAPTION),
-        Picture(lambda: svg(nyquist_chart(tuning)), _NYQUIST_CAPTION),
     )
-    return Section("Margins", "margins", pictures=pictures, level=Level.PAGE)
+    nyquist = Section(
+        "Nyquist diagram",
+        pictures=(Picture(lambda: svg(nyquist_chart(tuning)), _NYQUIST_CAPTION),),
+        level=Level.PAGE,
+        is_folded=True,
+    )
+    return Section("Margins", "margins", pictures=pictures, parts=(nyquist,), level=Level.PAGE)
 
 
 def _robustness(tuning: Tuning) -> Section:

@@ -92,7 +92,11 @@ def _as_objective(value: object) -> object:
 
 
 class NotchTable(StrictTable):
-    """(s^2 + 2 depth damping omega s + omega^2) / (s^2 + 2 damping omega s + omega^2): `depth` is what passes."""
+    """(s^2 + 2 depth damping omega s + omega^2) / (s^2 + 2 damping omega s + omega^2).
+
+    Attributes:
+        omega: frequency that it stops; damping: ratio, half its relative width; depth: gain that is left at omega.
+    """
 
     omega: PositiveFrequency
     damping: Positive = 0.5
@@ -100,14 +104,27 @@ class NotchTable(StrictTable):
 
 
 class PassTable(StrictTable):
-    """Of second order: low-pass omega^2, band-pass 2 damping omega s, high-pass s^2, over the polynomial of both."""
+    """Of second order: low-pass omega^2, band-pass 2 damping omega s, high-pass s^2, over the polynomial of both.
+
+    Attributes:
+        omega: natural frequency; damping: its ratio; the gain is 1 where the filter passes fully.
+    """
 
     omega: PositiveFrequency
     damping: Positive = 0.7  # damping ratio, about that of Butterworth's filter, 0.707
 
 
 class BlockTable(StrictTable):
-    """One transfer function: coefficients of s with the highest power first, or a filter by its kind (`lag` in s)."""
+    """One transfer function: coefficients of s, or a filter by its kind.
+
+    Attributes:
+        name: for the report.
+        num, den: coefficients of s, highest power first; the degree of `num` is no higher than that of `den`.
+        notch: stops one frequency; low_pass: passes what is slow.
+        band_pass: passes what is about one frequency; high_pass: passes what is fast.
+        lag: time constant of a lag of first order.
+        source: citation, for the report.
+    """
 
     name: str = ""
     num: Coefficients | None = None
@@ -129,15 +146,22 @@ class BlockTable(StrictTable):
 
 
 class TermTable(BlockTable):
-    """One part of the controller in parallel: the gain of that name times the block."""
+    """One part of the controller in parallel: the gain of that name times the block.
+
+    Attributes:
+        gain: its name.
+    """
 
     gain: str
 
 
 class FinTable(StrictTable):
-    """`[plant.fin]`: wave slope to which a radian of fin angle is equivalent, at which speed, and how it grows.
+    """`[plant.fin]`: the fins; a `roll` model that was identified from decays, which show no fins, needs it, too.
 
-    Without `K_alpha` the model file's own is taken.
+    Attributes:
+        K_alpha: wave slope to which a radian of fin angle is equivalent; None: the model's own.
+        at_speed: where `K_alpha` holds; None: the plant's speed.
+        law: how it goes with the speed.
     """
 
     K_alpha: Positive | None = None
@@ -146,10 +170,23 @@ class FinTable(StrictTable):
 
 
 class PlantTable(StrictTable):
-    """`[plant]`: what is controlled, as transfer functions or as a model file of `identify`.
+    """`[plant]`: what is controlled, as transfer functions or as a model file of `identify`: one of the first three.
 
-    `roll`: wave slope to roll angle, with `fin`; `response`: actuator to output; `model`: the path of a model file, and
-    `scale` the length of the craft over that of the one identified, by Froude's law.
+    Attributes:
+        roll: transfer function from the wave slope to the roll angle, with `[plant.fin]`.
+        response: transfer function from the actuator to the output, with `output` and `actuator`; what disturbs it acts
+            like the actuator.
+        model: a model file as `identify` writes it, relative to the loop file, `${NAME}` an environment variable;
+            `--from FILE` takes its place.
+        scale: length of the craft over that of the one identified: its model at that size by Froude's law; None: 1.
+        speed: of the ship; None: `at_speed` of the fins, else the model's own.
+        fin: how much the fins do.
+        output, actuator: symbols of the notation; None: `phi` and `alpha_f` of a model that rolls, `psi` and `delta` of
+            one that is steered.
+        disturbance: symbol of the input that the waves move; None: `alpha_w` of a model that rolls.
+        amplitude: roll angle about which nonlinear damping and restoring are linearised, by equal energy and first
+            harmonic; None: at rest.
+        inputs: those held constant, such as `{ n = 10.4 }`; None: as in the trials.
     """
 
     roll: BlockTable | None = None
@@ -179,7 +216,13 @@ class PlantTable(StrictTable):
 
 
 class GainTable(StrictTable):
-    """`[controller.gains.NAME]`: where it may lie, or its value alone where it is fixed."""
+    """`[controller.gains.NAME]`: where it may lie, or its value alone where it is fixed.
+
+    Attributes:
+        value: where it starts, or stays if it is fixed.
+        lower, upper: bounds of a gain that is free.
+        fixed: keeps the value.
+    """
 
     value: float | None = None
     lower: float | None = None
@@ -196,7 +239,23 @@ class GainTable(StrictTable):
 
 
 class ControllerTable(StrictTable):
-    """`[controller]`: `yu2014` (the published fin loop), `pid` (on the output error) or `blocks` (terms one by one)."""
+    """`[controller]`: what turns the output into the order to the actuator.
+
+    Attributes:
+        kind: `yu2014`: rate gyro, preamplifier and three terms of Yu et al. 2014; `pid`: KP + KI / s + KD s / (T s + 1)
+            on the output error, positive gains oppose the motion; `blocks`: terms one by one.
+        preamplifier: of `yu2014`: 30 s / (30 s + 1), the usual rate-gyro law, or 1 / (30 s + 1) as the paper has it.
+        parts: of `pid`: which of the three; None: those with gains named, else `KP` and `KI` for a speed, all for
+            others.
+        derivative_filter: of `pid`: T, half a sample at least, since a shorter one rings; None: a tenth of the fastest
+            loop's time.
+        sample_s: sample time on board, whose hold is in every margin and simulation; None: 30 samples a period of the
+            frailest frequency.
+        sensor: blocks between output and terms.
+        terms: of `blocks`: gain and transfer function of each.
+        filters: blocks common to all terms, notches for example.
+        gains: bounds or value of each; None: the published bounds of `yu2014`, those of the plant's poles for `pid`.
+    """
 
     kind: Literal["yu2014", "pid", "blocks"]
     preamplifier: Literal["printed", "washout"] = "washout"
@@ -224,9 +283,14 @@ class ControllerTable(StrictTable):
 
 
 class ExtendedStructureTable(StrictTable):
-    """`[[extended_structures]]`: a loop with more terms, to be compared.
+    """`[[extended_structures]]`: a loop with more terms, compared and, where simulation shows it to be better, chosen.
 
-    band_pass, low_pass, notch: where they are set; without, at multiples of the frequency at which the plant swings.
+    Attributes:
+        name: for tables; None: from what is added.
+        add: a band-pass (gain `KB`) and a low-pass (gain `KL`) in parallel to the terms, a notch in all.
+        band_pass, low_pass: where they are set; None: at 0.63 and 3.2 times the plant's own frequency, as found for the
+            published fins.
+        notch: where it is set; None: at the plant's own frequency.
     """
 
     name: str = ""
@@ -247,11 +311,18 @@ class ExtendedStructureTable(StrictTable):
 
 
 class ActuatorTable(StrictTable):
-    """`[actuator]`: largest excursion from the steady value, largest rate, angle of stall, and the servo's blocks.
+    """`[actuator]`: what the fins, rudders or nozzles can do.
 
-    `dead_time` in s; `inertia` about the stocks in kg m^2 and `efficiency` of the drive, `area` and effective
-    `aspect_ratio` of fins or rudders, for the energy. `log`: a file with ordered and actual angles, from which
-    rate, dead time and lag are taken that do not stand here.
+    Attributes:
+        limit: largest excursion from the steady value; rate: largest rate.
+        stall: fin angle beyond which lift is lost, in simulation.
+        dead_time: from the order to the servo, without the sampling; it is in every margin and simulation, and as long
+            again is to be tolerated; None: 0.
+        log: record or trial file with the angle (`delta`) and its order (`delta_ref`): gives `rate`, `dead_time` and
+            lag that do not stand here, with intervals.
+        inertia: of all fins or rudders about their stocks, for the energy; efficiency: of their drive.
+        area: of all fins or rudders, for the drag; aspect_ratio: the effective one, twice the geometric one at a hull.
+        servo: blocks from the order to the actuator; None: for `yu2014` its own.
     """
 
     limit: SiAmount | None = None
@@ -267,7 +338,13 @@ class ActuatorTable(StrictTable):
 
 
 class SeawayTable(SeaTable):
-    """One `[[seas]]` block: a sea, met under a heading (0 following, 180 degrees head) at a speed."""
+    """One `[[seas]]` block: a sea, met under a heading at a speed.
+
+    Attributes:
+        heading: to the waves, 0 following, 180 degrees head.
+        speed: of the ship; None: the plant's.
+        spreading: exponent s of cos^2s over half a turn; None: long-crested.
+    """
 
     heading: Heading
     speed: PositiveSpeed | None = None
@@ -275,7 +352,13 @@ class SeawayTable(SeaTable):
 
 
 class SlowDisturbanceTable(StrictTable):
-    """One `[[slow_disturbances]]` block: its rms, acting like the actuator; bandwidth in rad/s."""
+    """One `[[slow_disturbances]]` block: a Gauss-Markov process, for gusts, current and slow forces of waves.
+
+    Attributes:
+        rms: it acts like the actuator, in its unit, or like `plant.disturbance` where that is stated.
+        bandwidth: how fast it changes.
+        speed: of the ship; None: the plant's.
+    """
 
     rms: SiAmount
     bandwidth: PositiveFrequency
@@ -283,14 +366,23 @@ class SlowDisturbanceTable(StrictTable):
 
 
 class SensorsTable(StrictTable):
-    """`[sensors]`: rms of the white noise in each sample of the output, and the step in which it is read."""
+    """`[sensors]`: errors of the output as it is read, in every variance and simulation.
+
+    Attributes:
+        noise: rms of the white noise in each sample, before the controller's `sensor`; None: 0.
+        resolution: the step in which it is read; None: 0.
+    """
 
     noise: SiAmount | None = None
     resolution: SiAmount | None = None
 
 
 class HullTable(StrictTable):
-    """`[hull]`: the box over which the slope of short waves is averaged."""
+    """`[hull]`: the box over which the slope of short waves is averaged.
+
+    Attributes:
+        L, B, T: length, breadth and draught; without the table, the ship's own of the model file.
+    """
 
     L: PositiveLength
     B: PositiveLength
@@ -305,9 +397,17 @@ ObjectiveName = Literal[
 
 
 class ObjectiveTable(StrictTable):
-    """One thing to be made small; `height` above the axis and `friction` of interruptions, `lever` of sickness by roll.
+    """One entry of `minimise`, or a name alone: what is to be small.
 
-    x: of what heave and pitch do at a point, forward of the origin; duration: of a sickness dose.
+    Attributes:
+        name: variances of the output and the actuator and of their rates, `roll` and `fin` where these are meant;
+            others in the table of the page.
+        height: of a standing person's centre of gravity above the axis, for interruptions; friction: of shoe and deck.
+        lever: of sickness by roll, off the axis.
+        x: of what heave and pitch do at a point, forward of the origin.
+        duration: of a sickness dose.
+        target: rms aimed at; None: where the share `limits.saturation` of amplitudes lies beyond `actuator.limit`.
+        one_sided: `false` counts a quiet actuator as missed, too, as Yu et al. print it.
     """
 
     name: ObjectiveName
@@ -341,7 +441,13 @@ class ObjectiveTable(StrictTable):
 
 
 class LimitsTable(StrictTable):
-    """`[limits]`: largest Ms, and shares of amplitudes beyond the actuator's limit and rate."""
+    """`[limits]`: what every controller keeps.
+
+    Attributes:
+        Ms: largest peak of the sensitivity.
+        saturation, rate_saturation: largest share of amplitudes, and of rate amplitudes, beyond the actuator's, by
+            Rayleigh's distribution.
+    """
 
     Ms: Annotated[float, Field(gt=1)] = 1.6  # tolerates 38 degrees of phase, a factor of 2.7 in gain; chosen
     saturation: Share = 0.2  # of amplitudes beyond the limit; chosen
@@ -349,7 +455,11 @@ class LimitsTable(StrictTable):
 
 
 class SimulationTable(StrictTable):
-    """`[simulation]`: the nonlinear check; no seeds, no check."""
+    """`[simulation]`: the nonlinear check; without the table, of stabilisers only.
+
+    Attributes:
+        seeds: seas that it runs through, 0: none; duration: of each; step: of the integration.
+    """
 
     seeds: Annotated[int, Field(ge=0, le=1000)] = 20  # seas, as in `SimulationSettings`
     duration: PositiveDuration = 1000.0  # s, as in `SimulationSettings`
@@ -357,10 +467,13 @@ class SimulationTable(StrictTable):
 
 
 class DemandTable(StrictTable):
-    """`[demand]`: a change of the output that the loop has to follow, and the largest overshoot as a share of it.
+    """`[demand]`: a change of the output that the loop has to follow.
 
-    `settling`: the longest time until the output stays within 5 % of it; `feed_forward`: the reference moves the
-    actuator, too.
+    Attributes:
+        change: of the output, through a critically damped reference filter; overshoot: largest share of it.
+        settling: longest time until the output stays within 5 % of the change; None: any.
+        feed_forward: the reference moves the actuator, too, by what the plant needs for its rate and acceleration.
+        time_constant: of the reference filter; None: ship's length over speed.
     """
 
     change: SiAmount
@@ -371,10 +484,12 @@ class DemandTable(StrictTable):
 
 
 class TrackTable(StrictTable):
-    """`[track]`: a track to be kept by line of sight around the heading loop, in a current across it.
+    """`[track]`: a track to be kept by line of sight around the heading loop.
 
-    `current` is its rms and `bandwidth` how fast it changes; `corner` is the turn of the track on which the guidance is
-    tried, and `acceptance` the distance before it at which the next leg is taken.
+    Attributes:
+        current: rms of the current across the track; bandwidth: how fast it changes.
+        corner: turn of the track on which the guidance is tried.
+        acceptance: distance before the corner at which the next leg is taken; None: two ship's lengths.
     """
 
     current: PositiveSpeed
@@ -386,8 +501,11 @@ class TrackTable(StrictTable):
 class StationTable(StrictTable):
     """`[station]`: a place and heading to be kept by a craft with thrusters, beside its heading loop.
 
-    `current` is steady, from any direction, and varies by `current_rms` below `bandwidth`; `gust`: rms of a force ahead
-    and of one to the side, below `gust_bandwidth`; `limit`: share of full command that may be used.
+    Attributes:
+        current: steady, from any direction; current_rms: how much it varies; bandwidth: how fast.
+        gust: rms of a force ahead and of one to the side, N, or m/s^2 where no thrust is known in newtons.
+        gust_bandwidth: how fast it changes.
+        limit: share of full command that may be used.
     """
 
     current: PositiveSpeed
@@ -405,7 +523,24 @@ class StationTable(StrictTable):
 
 
 class LoopFile(StrictTable):
-    """The whole file."""
+    """The whole file.
+
+    Attributes:
+        question: a sentence for the report; name: of the loop; None: from actuator and output.
+        plant: what is controlled; controller: what controls it; actuator: what the fins, rudders or nozzles can do.
+        sensors: errors of the output as it is read.
+        hull: box over which the slope of short waves is averaged.
+        excitation: how an elevation becomes a force; `file` relative to the loop file.
+        seas, slow_disturbances: what disturbs; objectives are means over all, limits bind in each.
+        minimise: what is to be small, names or tables; the first serves best to name the motion.
+        limits: what every controller keeps.
+        baselines: gains to stand beside ours: `[baselines.NAME]` with a line for each, `KP = 11.053`.
+        extended_structures: controllers with more terms, to be compared.
+        schedule: gains for every combination of speed, heading and height; simulation: the nonlinear check.
+        demand: a change of the output to follow; track: a track to keep; station: a place to keep.
+        uncertainty: ships and actuators that differ from what is declared.
+        genetic: settings of `--method genetic`.
+    """
 
     question: str = ""
     name: str = ""

@@ -55,8 +55,7 @@ class HeadingLoop:
     @cached_property
     def _controller(self) -> tuple[Array, Array]:
         """Numerator and denominator of the controller from the heading error to the rudder."""
-        den, nums = replace(self.loop.continuous, plant=Block("none")).polynomials
-        return self.loop.gain_values @ nums, den
+        return replace(self.loop.continuous, plant=Block("none")).fraction(self.loop.gain_values)
 
     @cached_property
     def _characteristic(self) -> Array:

@@ -456,15 +456,19 @@ def loop_mat(tuning: Tuning) -> bytes:
 def controller_polynomials(tuning: Tuning) -> Rational:
     """Return K(s) = sensors * (sum of gain_i term_i) * filters * servo as num and den, highest power first.
 
+    An integrator whose gain is zero is left out: it moves nothing.
+
     Raises:
         InputError: a term's gain is not among the chosen ones.
     """
     terms = [c for c in tuning.components if c.role == "term"]
-    dens = list(dict.fromkeys(c.den for c in terms))
-    parallel = np.zeros(1)
     for term in terms:
         if term.gain not in tuning.chosen.gains:
             raise InputError(f"term '{term.name}' is multiplied by '{term.gain}', which is none of the chosen gains")
+    moving = [c for c in terms if c.den[-1] or tuning.chosen.gains[c.gain]]
+    dens = list(dict.fromkeys(c.den for c in moving))
+    parallel = np.zeros(1)
+    for term in moving:
         other_dens = (den for den in dens if den != term.den)
         numerator = reduce(np.polymul, other_dens, tuning.chosen.gains[term.gain] * np.array(term.num))
         parallel = np.polyadd(parallel, np.atleast_1d(numerator))

@@ -70,7 +70,11 @@ class Amount(StrictTable):
 
 
 class Quantities(StrictTable):
-    """Numbers of one unit; without one they are SI."""
+    """Numbers of one unit; without one they are SI.
+
+    Attributes:
+        values: the numbers; unit: of all of them.
+    """
 
     values: Annotated[tuple[float, ...], Field(min_length=1)]
     unit: Unit | None = None

@@ -143,8 +143,8 @@ def open_loop_transfer_function(loop: TransferLoop) -> "TransferFunction":
     """Return L(s) at the loop's gains, from the common denominator; of a sampled loop L(z)."""
     import control
 
-    d, n = loop.polynomials
+    n, d = loop.fraction(loop.gain_values)
     if loop.sampling is None:
-        return control.TransferFunction(loop.gain_values @ n, np.array(d))
-    b, a = difference_equation(Block("open loop", tuple(loop.gain_values @ n), tuple(d)), loop.sampling.sample_s)
+        return control.TransferFunction(n, np.array(d))
+    b, a = difference_equation(Block("open loop", tuple(n), tuple(d)), loop.sampling.sample_s)
     return control.TransferFunction(b, a, loop.sampling.sample_s)

@@ -9,7 +9,7 @@ from typing import Self
 import numpy as np
 from scipy.linalg import eig, expm
 
-from seatrial.core.values import Array, InputError, Parameters, frozen
+from seatrial.core.values import Array, Index, InputError, Parameters, frozen
 from seatrial.physics.hydro.excitation import Complex
 
 # A transfer function of real coefficients: one block of a diagram.
@@ -417,6 +417,28 @@ class TransferLoop:
             row[len(row) - len(made) :] = made
         return frozen(common), frozen(numerators)
 
+    def idle_integrators(self, gains: Array) -> Index:
+        """Return how many poles at the origin are those of terms whose gains are all zero, of gains (m, g), (m,).
+
+        Such a term moves nothing: d and the n_i of the others have the factor s so many times, which is left out.
+        """
+        idle = np.zeros(len(gains), dtype=np.int64)
+        for den in dict.fromkeys(term.block.den for term in self.terms):
+            at_origin = len(den) - len(np.trim_zeros(den, "b"))
+            if at_origin:
+                of_den = [i for i, term in enumerate(self.terms) if term.block.den == den]
+                idle += at_origin * np.all(gains[:, of_den] == 0.0, axis=1)
+        return idle
+
+    def fraction(self, gains: Array) -> tuple[Array, Array]:
+        """Return numerator and denominator of L at gains (g,), of equal length, without idle integrators.
+
+        Their sum is the characteristic polynomial of the closed loop.
+        """
+        d, n = self.polynomials
+        count = len(d) - int(self.idle_integrators(gains[None])[0])
+        return np.asarray(gains @ n)[:count], d[:count]
+
     def controller_terms(self, omega: Array) -> Complex:
         """Return what each gain multiplies between y and a, shape (g, n), at omega (n,) [rad/s]."""
         return self._term_responses(omega) * self._around_response(omega)
@@ -466,6 +488,5 @@ class TransferLoop:
     @property
     def closed_loop_poles(self) -> Complex:
         """Roots of the characteristic polynomial at the loop's gains, rad/s."""
-        d, n = self.polynomials
-        found = np.asarray(np.roots(d + self.gain_values @ n), dtype=np.complex128)
+        found = np.asarray(np.roots(np.add(*self.fraction(self.gain_values))), dtype=np.complex128)
         return found if self.sampling is None else self.sampling.from_w(found)

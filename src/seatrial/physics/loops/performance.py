@@ -117,7 +117,7 @@ def _log_frequencies(loop: TransferLoop) -> Array:
     """Logarithms of frequencies over the band and all closed poles: a weak loop that integrates crosses one early."""
     low, high = frequency_band(loop)
     poles = np.abs(loop.closed_loop_poles)
-    poles = poles[poles > 0.0]  # an integrator whose gain is 0 stays at rest
+    poles = poles[poles > 0.0]  # a plant that integrates and is not controlled stays where it is
     highest = math.inf if loop.sampling is None else loop.sampling.highest
     first, last = min(low, _BELOW * poles.min()), min(max(high, _ABOVE * poles.max()), highest)
     return np.linspace(math.log(first), math.log(last), _SAMPLES)
@@ -293,7 +293,14 @@ class Performance:
         if not with_Ms:
             wide_re = wide_im = self._no_frequencies
         peak, out = np.zeros(len(k)), np.empty((len(k), len(self.variances)))
-        evaluate_loops(k, *self._polynomials, re, im, *self._node_weights, wide_re, wide_im, peak, out)
+        idle, (d, n) = self.loop.idle_integrators(k), self._polynomials
+        for count in set(idle.tolist()):
+            alike = idle == count
+            Ms, variances = np.zeros(int(alike.sum())), np.empty((int(alike.sum()), len(self.variances)))
+            order = len(d) - count
+            evaluate_loops(k[alike], d[:order], np.ascontiguousarray(n[:, :order]), re, im, *self._node_weights,
+                           wide_re, wide_im, Ms, variances)  # fmt: skip
+            peak[alike], out[alike] = Ms, variances
         return LoopEvaluation(out, peak)
 
     def variance_gradients(self, gains: Array) -> Array:
