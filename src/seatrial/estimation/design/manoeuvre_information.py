@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.results import Actuator, ManoeuvrePrecision, TimedOrder
 from seatrial.core.values import Array, Index, Record, RecordKind, frozen
-from seatrial.estimation.design.task import DesignTask, PriorShips
+from seatrial.estimation.design.task import DesignTask, PriorShips, coefficient_magnitudes
 from seatrial.physics.simulate.batch import SegmentBatch
 from seatrial.physics.simulate.linear import batch_class
 from seatrial.physics.simulate.replay import record_of, replay
@@ -134,16 +134,6 @@ class ManoeuvreEvaluator:
         return np.tile(self.task.initial_state, (self.ships.count, 1))
 
     @cached_property
-    def _magnitudes(self) -> Array:
-        """|coefficient| of each ship, the size that counts where it is smaller, (ships, k)."""
-        parameters = self.task.model.parameters
-        places = [parameters.index(n) for n in parameters.free_names]
-        values = np.abs(self.ships.parameters[:, places])
-        scale = np.array([p.characteristic_scale for p in parameters.free])
-        values = np.where(values > 1e-3 * scale, values, scale)  # smaller values count by their scale; chosen
-        return np.maximum(values, [p.scale for p in parameters.free])
-
-    @cached_property
     def _weights(self) -> Array:
         """1 / standard deviation of each sensor's noise, once for each column of its slopes."""
         return np.repeat(1.0 / np.array(list(self.task.sensors.values())), self._batch_without_inputs.column_count)
@@ -174,7 +164,7 @@ class ManoeuvreEvaluator:
         blocks = [self._of_ships(batch, first, min(first + width, count)) for first in range(0, count, width)]
         y, information = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
         lost = np.any(~np.isfinite(y), axis=(1, 2))
-        errors = _standard_errors(information)[:, : len(self.task.model.parameters.free)] / self._magnitudes
+        errors = _standard_errors(information)[:, : len(self.task.model.parameters.free)] / coefficient_magnitudes(self.task, self.ships.parameters)
         relative = np.where(lost[:, None], np.nan, errors)
         return ManoeuvreInformation(relative, *self._drift_and_distance(np.where(lost[:, None, None], 0.0, y)))
 
