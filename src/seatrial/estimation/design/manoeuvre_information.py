@@ -39,7 +39,8 @@ def actuator_response(actuator: Actuator, orders: Array, neutral: float, dt: flo
     step, now, positions = actuator.rate * dt, neutral, []
     for order in wanted.tolist():
         positions.append(now)
-        now += min(max(order - now, -step), step)
+        way = order - now
+        now += step if way > step else -step if way < -step else way
     return np.array(positions)
 
 
@@ -134,6 +135,10 @@ class ManoeuvreEvaluator:
         return np.tile(self.task.initial_state, (self.ships.count, 1))
 
     @cached_property
+    def _magnitudes(self) -> Array:
+        return coefficient_magnitudes(self.task, self.ships.parameters)
+
+    @cached_property
     def _weights(self) -> Array:
         """1 / standard deviation of each sensor's noise, once for each column of its slopes."""
         return np.repeat(1.0 / np.array(list(self.task.sensors.values())), self._batch_without_inputs.column_count)
@@ -164,7 +169,7 @@ class ManoeuvreEvaluator:
         blocks = [self._of_ships(batch, first, min(first + width, count)) for first in range(0, count, width)]
         y, information = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
         lost = np.any(~np.isfinite(y), axis=(1, 2))
-        errors = _standard_errors(information)[:, : len(self.task.model.parameters.free)] / coefficient_magnitudes(self.task, self.ships.parameters)
+        errors = _standard_errors(information)[:, : len(self.task.model.parameters.free)] / self._magnitudes
         relative = np.where(lost[:, None], np.nan, errors)
         return ManoeuvreInformation(relative, *self._drift_and_distance(np.where(lost[:, None, None], 0.0, y)))
 
