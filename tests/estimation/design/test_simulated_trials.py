@@ -43,7 +43,7 @@ def test_the_error_of_each_coefficient_is_the_one_predicted(is_fitted: bool) -> 
     assert np.all((tried.error / tried.bound > 0.8) & (tried.error / tried.bound < 1.25))
 
 
-def test_what_a_fit_does_not_tell_from_zero_counts_by_its_standard_deviation() -> None:
+def test_what_a_fit_does_not_distinguish_from_zero_counts_by_its_standard_deviation() -> None:
     """One assumed zero counts by its kind's size; how far a ship may differ is a share of the same."""
     task = coaster(is_fitted=False)
     place = list(COEFFICIENTS).index("N_v")

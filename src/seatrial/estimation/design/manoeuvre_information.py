@@ -39,8 +39,8 @@ def actuator_response(actuator: Actuator, orders: Array, neutral: float, dt: flo
     step, now, positions = actuator.rate * dt, neutral, []
     for order in wanted.tolist():
         positions.append(now)
-        way = order - now
-        now += step if way > step else -step if way < -step else way
+        remaining = order - now
+        now += step if remaining > step else -step if remaining < -step else remaining
     return np.array(positions)
 
 

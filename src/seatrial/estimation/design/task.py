@@ -251,15 +251,15 @@ def draw_ships(task: DesignTask, seed: int, draws: int | None = None) -> PriorSh
 
 
 def coefficient_magnitudes(task: DesignTask, parameters: Array) -> Array:
-    """Return what errors of each ship's free coefficients are relative to, (ships, k), SI; parameters (ships, np).
+    """Return what errors of each ship's free coefficients are relative to, (ships, k); parameters (ships, np).
 
-    The magnitude of the coefficient. One that the model file does not tell from zero counts by its standard deviation
-    there; one that is assumed zero, by the size that its model gives.
+    The magnitude of the coefficient; its standard deviation in the model file where that is larger; the size that its
+    model gives where it is assumed zero.
     """
     free = task.model.parameters.free
     values = np.abs(parameters[:, [task.model.parameters.index(p.name) for p in free]])
-    known = np.zeros(len(free)) if task.covariance is None else np.sqrt(np.diag(task.covariance))
-    least = np.maximum(known, [_NEAR_ZERO * abs(p.value) for p in free])
+    deviations = np.zeros(len(free)) if task.covariance is None else np.sqrt(np.diag(task.covariance))
+    least = np.maximum(deviations, [_NEAR_ZERO * abs(p.value) for p in free])
     return np.maximum(values, np.where(least > 0.0, least, [p.characteristic_scale for p in free]))
 
 
