@@ -391,7 +391,8 @@ def _confirmation_section(design: Design) -> Section:
             f"{done.converged_runs} of {done.runs} fits succeeded.",
         ),
         table=table,
-        note="Root mean squares over the fits that succeeded, over the magnitude of the coefficient.",
+        note="Predicted: root mean square over the ships, over the magnitude of the coefficient. Error of the fits: "
+        "that times the root mean square of each fit’s error over the one predicted for its ship.",
         level=Level.PAGE,
     )
 

@@ -105,6 +105,20 @@ def test_one_worker_finds_the_same_bits(craft: DesignTask, monkeypatch: pytest.M
     assert np.array_equal(search_orders(yardstick, 7, quiet, GENERATIONS)[0].point, many.point)
 
 
+def test_a_strategy_without_gains_ends_at_the_point_that_it_had(
+    craft: DesignTask, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two generations without a gain end it, here before its twelve are over; the point is the one of that time."""
+    at = bench(craft)
+    yardstick = DesignObjective.from_standards(at, standard_manoeuvres(at))
+    whole, _ = search_orders(yardstick, 7, quiet, GENERATIONS)
+    monkeypatch.setattr("seatrial.estimation.design.search.IDLE_GENERATIONS", 2)
+    found, _ = search_orders(yardstick, 7, quiet, GENERATIONS)
+    assert len(found.history) < len(whole.history)
+    assert found.history == whole.history[: len(found.history)]
+    assert found.history[-1] == found.history[-3] == found.value
+
+
 def test_ctrl_c_gives_the_best_so_far_and_says_so(craft: DesignTask) -> None:
     said: list[str] = []
 

@@ -139,12 +139,12 @@ class ModelEquations:
     def __hash__(self) -> int:
         return hash(self.digest)
 
-    @property
+    @cached_property
     def states(self) -> tuple[str, ...]:
         """Names of the states."""
         return tuple(rate.name for rate in self.rates)
 
-    @property
+    @cached_property
     def input_names(self) -> tuple[str, ...]:
         """Names of the inputs."""
         return tuple(i.name for i in self.inputs)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
 
@@ -61,7 +62,7 @@ class Model:
         """Names of the states."""
         return self.equations.states
 
-    @property
+    @cached_property
     def inputs(self) -> tuple[Input, ...]:
         """The input channels, held where equations or records hold them."""
         return tuple(replace(i, is_held=i.is_held or i.name in self.held) for i in self.equations.inputs)

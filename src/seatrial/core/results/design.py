@@ -113,7 +113,9 @@ class Confirmation:
     runs: Annotated[int, Field(description="number of simulated trials")]
     converged_runs: Annotated[int, Field(description="number of fits that succeeded")]
     error: Annotated[
-        Array, BY_COEFFICIENT, Field(description="rms error over the magnitude of each coefficient, shape (k,)")
+        Array,
+        BY_COEFFICIENT,
+        Field(description="bound times the rms of each fit's error over the one predicted for its ship, shape (k,)"),
     ]
     bound: Annotated[
         Array,

@@ -32,7 +32,13 @@ from seatrial.estimation.design.search import (
     search_step,
     standard_manoeuvres,
 )
-from seatrial.estimation.design.task import DesignTask, PriorShips, draw_ships, relative_spread
+from seatrial.estimation.design.task import (
+    DesignTask,
+    PriorShips,
+    coefficient_magnitudes,
+    draw_ships,
+    relative_spread,
+)
 from seatrial.estimation.estimate.start import find_start
 from seatrial.estimation.information.symmetries import refuse_unidentifiable
 from seatrial.estimation.problem.output_error import OutputError
@@ -172,7 +178,10 @@ def confirm_design(
     seed: int,
     report_progress: Callable[[str], None],
 ) -> Confirmation:
-    """Return one noisy record and one fit for every ship; `model_inputs` are the plan's inputs at the sensors' rate."""
+    """Return what a noisy record and a fit of every ship err by; `model_inputs`: the plan's at the sensors' rate.
+
+    Each error counts over the one predicted for its ship, so that a ship that shows little outweighs no other.
+    """
     predicted = ManoeuvreEvaluator(task, ships, 1.0 / task.request.rate).evaluate(model_inputs).relative_errors
     streams = np.random.SeedSequence(seed).spawn(ships.count)
 
@@ -184,16 +193,16 @@ def confirm_design(
     report_progress(f"confirming: {ships.count} simulated trials")
     results = map_in_threads(fitted, list(range(ships.count)))
     places = [task.model.parameters.index(n) for n in task.model.parameters.free_names]
-    scale = np.array([p.characteristic_scale for p in task.model.parameters.free])
-    errors, bounds = [], []
+    magnitudes = coefficient_magnitudes(task, ships.parameters)
+    ratios, bounds = [], []
     for number, result in enumerate(results):
         if result is not None and result.status.is_success:
-            true = ships.parameters[number, places]
-            # smaller values count by their scale; chosen
-            errors.append((result.point - true) / np.where(np.abs(true) > 1e-3 * scale, np.abs(true), scale))
+            error = (result.point - ships.parameters[number, places]) / magnitudes[number]
+            ratios.append(error / predicted[number])
             bounds.append(predicted[number])
     none = np.full((1, len(places)), np.nan)
-    return Confirmation(ships.count, len(errors), _rms(errors or none), _rms(bounds or none))
+    bound = _rms(bounds or none)
+    return Confirmation(ships.count, len(ratios), _rms(ratios or none) * bound, bound)
 
 
 def _fit_record(task: DesignTask, record: Record) -> Solution:

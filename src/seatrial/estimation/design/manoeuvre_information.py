@@ -7,7 +7,7 @@ import numpy as np
 
 from seatrial.core.results import Actuator, ManoeuvrePrecision, TimedOrder
 from seatrial.core.values import Array, Index, Record, RecordKind, frozen
-from seatrial.estimation.design.task import DesignTask, PriorShips
+from seatrial.estimation.design.task import DesignTask, PriorShips, coefficient_magnitudes
 from seatrial.physics.simulate.batch import SegmentBatch
 from seatrial.physics.simulate.linear import batch_class
 from seatrial.physics.simulate.replay import record_of, replay
@@ -39,7 +39,8 @@ def actuator_response(actuator: Actuator, orders: Array, neutral: float, dt: flo
     step, now, positions = actuator.rate * dt, neutral, []
     for order in wanted.tolist():
         positions.append(now)
-        now += min(max(order - now, -step), step)
+        remaining = order - now
+        now += step if remaining > step else -step if remaining < -step else remaining
     return np.array(positions)
 
 
@@ -135,13 +136,7 @@ class ManoeuvreEvaluator:
 
     @cached_property
     def _magnitudes(self) -> Array:
-        """|coefficient| of each ship, the size that counts where it is smaller, (ships, k)."""
-        parameters = self.task.model.parameters
-        places = [parameters.index(n) for n in parameters.free_names]
-        values = np.abs(self.ships.parameters[:, places])
-        scale = np.array([p.characteristic_scale for p in parameters.free])
-        values = np.where(values > 1e-3 * scale, values, scale)  # smaller values count by their scale; chosen
-        return np.maximum(values, [p.scale for p in parameters.free])
+        return coefficient_magnitudes(self.task, self.ships.parameters)
 
     @cached_property
     def _weights(self) -> Array:

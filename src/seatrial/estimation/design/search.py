@@ -113,7 +113,7 @@ def standard_manoeuvres(evaluator: ManoeuvreEvaluator) -> list[StandardManoeuvre
         return [*sequences, StandardManoeuvre("steps one by one", _single_step_inputs)]
     if not _is_steered(task):
         return [*sequences, StandardManoeuvre("sine sweep", _sweep_inputs), StandardManoeuvre("steps", _step_inputs)]
-    steered = [StandardManoeuvre(text, partial(_steered_inputs, text)) for text in _programmes(task)]
+    steered = [StandardManoeuvre(text, partial(_steered_inputs, text, {})) for text in _programmes(task)]
     return [*sequences, *(r for r in steered if _can_be_steered(evaluator, r))]
 
 
@@ -174,31 +174,40 @@ def _can_be_steered(evaluator: ManoeuvreEvaluator, standard: StandardManoeuvre) 
     return True
 
 
-def _steered_inputs(text: str, evaluator: ManoeuvreEvaluator) -> Array:
-    """Return each ship under the helmsman; after the last execute the rudder stays."""
-    return np.stack([_simulate_steered(evaluator, row, text) for row in evaluator.ships.parameters])
+def _steered_inputs(text: str, courses: dict[bytes, Array], evaluator: ManoeuvreEvaluator) -> Array:
+    """Return each ship under the helmsman; after the last execute the rudder stays.
+
+    courses: inputs at the sensors' rate by the ship's parameters; those that are missing are simulated and added.
+    """
+    task, count = evaluator.task, sample_count(evaluator.task, evaluator.dt)
+    stride = round(evaluator.dt * task.request.rate)
+    rows = []
+    for parameters in evaluator.ships.parameters:
+        if (ship := parameters.tobytes()) not in courses:
+            courses[ship] = _simulate_steered(task, parameters, text)
+        held = courses[ship][::stride]
+        rows.append(np.concatenate([held, np.repeat(held[-1:], max(0, count - len(held)), axis=0)])[:count])
+    return np.stack(rows)
 
 
-def _simulate_steered(evaluator: ManoeuvreEvaluator, parameters: Array, text: str) -> Array:
-    task, model = evaluator.task, evaluator.task.model
+def _simulate_steered(task: DesignTask, parameters: Array, text: str) -> Array:
+    """Return the inputs of a ship under the helmsman at the sensors' rate, (rows, nu), until he has finished."""
+    model = task.model
     ship = model.with_parameters(
         model.parameters.with_values(dict(zip(model.parameters.names, parameters, strict=True)))
     )
     (rudder,) = [a for a in task.request.actuators if a.name == RUDDER]
-    step = 1.0 / task.request.rate
     other_inputs = {a.name: task.neutral_positions[a.name] for a in task.request.actuators if a.name != RUDDER}
     record = manoeuvre(
         ship,
         programme(text),
-        dt=step,
+        dt=1.0 / task.request.rate,
         duration=task.request.duration,
         speed=float(task.initial_state[model.states.index("u")]) if model.has_speed else task.request.speed,
         inputs={**task.request.held, **other_inputs},
         slew_rate=rudder.rate if np.isfinite(rudder.rate) else SOLAS_SLEW_RATE,
     )
-    held = inputs_of(model, record)[:: round(evaluator.dt / step)]
-    count = sample_count(task, evaluator.dt)
-    return np.concatenate([held, np.repeat(held[-1:], max(0, count - len(held)), axis=0)])[:count]
+    return inputs_of(model, record)
 
 
 def _sweep_inputs(evaluator: ManoeuvreEvaluator) -> Array:
@@ -260,6 +269,8 @@ LIMIT_MARGIN = 0.02
 RANDOM_STARTS = 96
 # of the evolution strategy, ours
 GENERATIONS = 180
+# generations without a better point after which the strategy ends: on four craft gains came after 34 at most; chosen
+IDLE_GENERATIONS = 60
 # best random orders whose orders are exchanged; chosen: one alone often ends in a poor optimum
 EXCHANGED_STARTS = 3
 # evaluations of the exchanges for each generation that follows
@@ -331,11 +342,13 @@ def search_orders(
         # draws of a point outside the box; chosen
         settings = AdaptationSettings(iterations=generations, step=INITIAL_STEP / (BOX_UPPER - BOX_LOWER), resampling=5)
         strategy = CovarianceAdaptation(box, generator, settings, best)
-        while not strategy.done:
+        idle = 0
+        while not strategy.done and idle < IDLE_GENERATIONS:
             asked = strategy.ask()
             strategy.tell(np.array(map_in_threads(objective.cost, list(asked))))
             evaluations += len(asked)
             point, cost = strategy.best
+            idle = 0 if cost < value else idle + 1
             if cost < value:
                 best, value = point, cost
             history.append(value)

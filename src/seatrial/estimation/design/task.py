@@ -214,6 +214,8 @@ def _demand_sizes(model: Model) -> None:
 
 # ships drawn lie within so many standard deviations, ours
 _MAX_DEVIATES = 2.0
+# share of the assumed value that stands for that of a drawn ship nearer to zero, ours
+_NEAR_ZERO = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -248,18 +250,29 @@ def draw_ships(task: DesignTask, seed: int, draws: int | None = None) -> PriorSh
     return PriorShips(drawn, precision)
 
 
+def coefficient_magnitudes(task: DesignTask, parameters: Array) -> Array:
+    """Return what errors of each ship's free coefficients are relative to, (ships, k); parameters (ships, np).
+
+    The magnitude of the coefficient; its standard deviation in the model file where that is larger; the size that its
+    model gives where it is assumed zero.
+    """
+    free = task.model.parameters.free
+    values = np.abs(parameters[:, [task.model.parameters.index(p.name) for p in free]])
+    deviations = np.zeros(len(free)) if task.covariance is None else np.sqrt(np.diag(task.covariance))
+    least = np.maximum(deviations, [_NEAR_ZERO * abs(p.value) for p in free])
+    return np.maximum(values, np.where(least > 0.0, least, [p.characteristic_scale for p in free]))
+
+
 def relative_spread(task: DesignTask) -> Array:
     """Return how far ships differ in each free coefficient, as a share of its magnitude, shape (k,)."""
-    free = task.model.parameters.free
-    if task.covariance is not None:
-        deviations = np.sqrt(np.diag(task.covariance))
-        return np.array([d / p.characteristic_scale for d, p in zip(deviations, free, strict=True)])
-    return np.array(
+    assumed = np.array(
         [
-            task.request.relative_spread if p.prior is None else p.prior.standard_deviation / p.characteristic_scale
-            for p in free
+            task.request.relative_spread * p.characteristic_scale if p.prior is None else p.prior.standard_deviation
+            for p in task.model.parameters.free
         ]
     )
+    deviations = assumed if task.covariance is None else np.sqrt(np.diag(task.covariance))
+    return deviations / coefficient_magnitudes(task, task.model.parameters.values[None])[0]
 
 
 def _latin_hypercube(count: int, size: int, generator: np.random.Generator) -> Array:

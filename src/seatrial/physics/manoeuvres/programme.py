@@ -17,6 +17,7 @@ from seatrial.physics.hydro.free_roll import swing_extremes
 PSI, R, DELTA, SIGN, SLEW, DT, APPROACH, COURSE, ANGLE, FINISHED, STAGE, STAGE_START, COUNT, TABLE = range(14)
 NOT_FINISHED = -1.0
 REGISTER_BITS, _ONES = 9, 5  # of the shift register: 511 switching times a period; ones at its start; chosen
+_FEEDBACK = 5  # of the register: x^9 + x^5 + 1 is primitive (Zierler & Brillhart 1968, Information and Control 13, 541)
 
 
 @dataclass(frozen=True)
@@ -159,11 +160,10 @@ def spiral_steps(largest: float, side: int) -> tuple[float, ...]:
 
 def binary_sequence(amplitude: float, seed: int) -> tuple[float, ...]:
     """Rudder orders [rad] of one period of a maximum length sequence, 2^9 - 1 switching times; the seed shifts it."""
-    from scipy.signal import max_len_seq
-
-    state = np.random.default_rng(seed).permutation([1] * _ONES + [0] * (REGISTER_BITS - _ONES))
-    bits = max_len_seq(REGISTER_BITS, state=state)[0]
-    return tuple(float(a) for a in np.radians(amplitude) * (2.0 * bits - 1.0))
+    bits = np.random.default_rng(seed).permutation([1] * _ONES + [0] * (REGISTER_BITS - _ONES)).tolist()
+    while len(bits) < 2**REGISTER_BITS - 1:
+        bits.append(bits[-REGISTER_BITS] ^ bits[_FEEDBACK - REGISTER_BITS])
+    return tuple(float(a) for a in np.radians(amplitude) * (2.0 * np.array(bits) - 1.0))
 
 
 # Programmes of manoeuvres: from a text such as ``zigzag:20/10:port`` to a compiled helmsman and his memory.
