@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 import seatrial as st
 from seatrial import estimators
 from seatrial.api import prepared_run
-from seatrial.control.proposals import Stretch, gain_schedule, look
-from seatrial.control.schedule import schedule
+from seatrial.control.proposals import Stretch, look
+from seatrial.control.schedule import gain_schedule, schedule
 from seatrial.control.task import ScheduleGrid
 from seatrial.core.figures.run import hull_outline
 from seatrial.core.results import Fit
