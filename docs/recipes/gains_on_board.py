@@ -14,8 +14,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import seatrial as st
-from seatrial.control.proposals import Stretch, gain_schedule, look
-from seatrial.control.schedule import schedule
+from seatrial.control.proposals import Stretch, look
+from seatrial.control.schedule import gain_schedule, schedule
 from seatrial.control.simulation import closed_loop, disturbance_series
 from seatrial.control.task import ScheduleGrid, SimulationSettings
 from seatrial.physics.sea import jonswap

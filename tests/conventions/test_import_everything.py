@@ -1,7 +1,15 @@
-"""Importing every submodule hides no public name behind a folder or a file of the same name."""
+"""Every submodule can be imported and hides no public name; scripts import what there is."""
 
+import ast
+import importlib
 import subprocess
 import sys
+from collections.abc import Iterator
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+from tests.conventions.source_tree import REPOSITORY
 
 SCRIPT = """
 import importlib, inspect, pkgutil
@@ -17,6 +25,30 @@ for name in names:
         assert callable(before[name]), f"seatrial.{name} is neither a function, a class nor a subpackage"
 print(len(names))
 """
+
+SCRIPTS = sorted(path for folder in ("benchmarks", "docs", "examples") for path in (REPOSITORY / folder).rglob("*.py"))
+
+
+def missing_imports(text: str) -> Iterator[str]:
+    """Return what a script imports from the package by names that are not there."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("seatrial"):
+            module = importlib.import_module(node.module)
+            for name in (f"{node.module}.{alias.name}" for alias in node.names):
+                is_module = hasattr(module, "__path__") and find_spec(name) is not None
+                if not is_module and not hasattr(module, name.rpartition(".")[2]):
+                    yield name
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: str(path.relative_to(REPOSITORY)))
+def test_scripts_import_what_there_is(path: Path) -> None:
+    assert list(missing_imports(path.read_text(encoding="utf-8"))) == []
+
+
+def test_a_name_that_moved_is_missed() -> None:
+    assert list(missing_imports("from seatrial.core.values import Record, Elsewhere")) == [
+        "seatrial.core.values.Elsewhere"
+    ]
 
 
 def test_no_submodule_hides_a_public_name() -> None:

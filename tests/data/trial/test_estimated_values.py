@@ -94,8 +94,9 @@ def test_marked_values_are_a_warning_and_carry_their_source(tmp_path: Path) -> N
     assert not trial.model.parameters["rho"].source.startswith(NOT_MEASURED)
 
 
-def test_what_a_mark_says_that_a_value_is_within_is_its_standard_deviation(tmp_path: Path) -> None:
-    text = SHIP.replace(f"{ESTIMATED}: kg, of", f"{ESTIMATED}: within 35 %, kg, of")
+@pytest.mark.parametrize("within", ["within 35 %, ", "within 35%, ", "within 35.0 % "])
+def test_what_a_mark_says_that_a_value_is_within_is_its_standard_deviation(tmp_path: Path, within: str) -> None:
+    text = SHIP.replace(f"{ESTIMATED}: kg, of", f"{ESTIMATED}: {within}kg, of")
     parameters = load_trial(written(tmp_path, text)).model.parameters
     prior = parameters["m"].prior
     assert prior is not None and prior.standard_deviation == pytest.approx(0.35 * 1.5e6)

@@ -87,7 +87,7 @@ def _finding(message: str, advice: str) -> Finding:
 ESTIMATED = "ESTIMATED"
 """Marks a line of a trial file whose number is not measured, in a comment, as `seatrial init` writes it."""
 _TABLE = re.compile(r"^\[+(?P<name>[\w.]+)\]+")
-_MARKED = re.compile(rf"^(?P<key>\w+)\s*=[^#]*# {ESTIMATED}: (?:within (?P<percent>\d+(?:\.\d+)?) %, )?(?P<text>[^;]*)")
+_MARKED = re.compile(rf"^(?P<key>\w+)\s*=[^#]*# {ESTIMATED}: (?:within (?P<percent>\d+\.?\d*) ?%,? )?(?P<text>[^;]*)")
 _THRUSTER_NAME = re.compile(r'^name\s*=\s*"(?P<name>[^"]*)"')
 ESTIMATED_VALUES = "estimated-values"
 _FOLLOWING = {"pitch_ratio": ("k_0", "k_1", "k_2")}

@@ -62,8 +62,8 @@ HIGHER_ORDER_SPREAD = {
     "Y_vvv": 0.2, "Y_vvr": 0.18, "Y_vrr": 0.06, "Y_rrr": 0.003,
     "N_vvv": 0.02, "N_vvr": 0.08, "N_vrr": 0.005, "N_rrr": 0.003,
 }  # fmt: skip
-"""Standard deviations about 0, primes of rho/2 L^2 and rho/2 L^3: twice the root mean square of the three ships; chosen
-for X_uu, X_rr and X_dd, which hold the resistance, the place of G and the rudder of small craft, to be wider."""
+"""Standard deviations about 0, primes of rho/2 L^2 and rho/2 L^3: twice the root mean square of the three ships,
+rounded up. X_uu, X_rr, X_dd and Y_rrr are wider, chosen: of small craft they hold resistance, place of G and rudder."""
 HIGHER_ORDER = (
     "as large as of a Mariner (Chislett & Stroem-Tejsen 1965, Hy-6), KVLCC2 (Yasukawa & Yoshimura 2015) and S175 "
     "(Son & Nomoto 1981)"
