@@ -42,9 +42,8 @@ _EQUAL_REDUCTION, _LARGEST_LOSS = 0.003, 0.85 * MAX_SATURATION_LOSS
 _ABOUT = 7  # rates between the neighbours of the best one, that one among them; chosen
 _CONFIDENCE = 0.95  # level of the paired interval within which a benefit is none; chosen
 _SAFER_MS, _EQUAL_MS = (1.3, 1.45), 0.05  # caps of designs with more margin; Ms that count as equal; chosen
-_RUN_AWAY = (
-    -1.0
-)  # reduction of a loop that runs away with an actuator of the spread: the motion at least doubles; chosen
+# reduction of a loop that runs away with an actuator of the spread: the motion at least doubles; chosen
+_RUN_AWAY = -1.0
 _LEAST_SHARE = 1e-12  # of amplitudes beyond a limit; guards the logarithm
 ROBUST, HARD_WORKING = "robust", "hard-working"
 """Names of the two designs that stand beside the chosen one."""
