@@ -213,6 +213,17 @@ def test_reduced_gradient_is_that_of_the_profile(rng: np.random.Generator) -> No
     np.testing.assert_allclose(problem.normal(point, local).without_local()[0], differences, rtol=1e-6)
 
 
+def test_a_block_without_a_measurement_says_nothing() -> None:
+    """A segment in which a sensor was silent: its local unknowns stay, shared ones are those of the other segments."""
+    shared, silent = np.eye(1), np.zeros((1, 1))
+    normal = NormalEquations(
+        1.0, np.ones(1), 2.0 * shared, np.array([[1.0], [0.0]]), np.array([shared, silent]), np.array([shared, silent])
+    )
+    gradient, hessian = normal.without_local()
+    np.testing.assert_allclose(gradient, [0.0], atol=1e-9)
+    np.testing.assert_allclose(hessian, [[1.0]], rtol=1e-9)
+
+
 def test_status_says_what_to_do() -> None:
     assert (
         solved(THURBER, [1000.0, 1000.0, 400.0, 40.0, 0.7, 0.3, 0.03], evaluations=3).solution.status

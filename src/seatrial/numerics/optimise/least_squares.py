@@ -123,10 +123,13 @@ def _sum_of_products(cross: Array, solved: Array) -> Array:
 
 
 def _with_ridge(blocks: Array) -> Array:
-    """Return blocks with a relative rounding-size ridge, so that an unobservable local direction stays put."""
+    """Return blocks with a relative rounding-size ridge, so that an unobservable local direction stays put.
+
+    A block of zeros, of a segment in which nothing was measured, is 1e-14 of the unit matrix.
+    """
     diagonal = np.einsum("sii->si", blocks)
-    # rounding of double precision; chosen
-    ridge = 1e-12 * diagonal + 1e-14 * (diagonal.max(axis=1, keepdims=True) + 1e-300)
+    largest = diagonal.max(axis=1, keepdims=True)
+    ridge = 1e-12 * diagonal + 1e-14 * np.where(largest > 0.0, largest, 1.0)  # rounding of double precision; chosen
     return blocks + np.einsum("si,ij->sij", ridge, np.eye(blocks.shape[1]))
 
 
