@@ -10,15 +10,19 @@ from seatrial.data.check.inputs import chi_square_tail, feedback_findings, feedb
 DT, ROWS, K, T = 0.1, 6001, 0.15, 8.0
 
 
-def steered(seed: int, *, is_closed: bool, gust: float = np.radians(1.2)) -> Record:
-    """T r' + r = K (delta + w), w first-order with a memory of 5 s, heading steps of +-10 deg each minute."""
+def steered(seed: int, *, is_closed: bool, gust: float = np.radians(1.2), is_coarse: bool = False) -> Record:
+    """T r' + r = K (delta + w), w first-order with a memory of 5 s, heading steps of +-10 deg each minute.
+
+    is_coarse: one course, and orders in whole degrees.
+    """
     rng = np.random.default_rng(seed)
     delta, r, psi = np.zeros(ROWS), np.zeros(ROWS), np.zeros(ROWS)
     bits = np.repeat(rng.choice([-1.0, 1.0], ROWS // 40 + 1), 40)[:ROWS] * np.radians(4.0)
     noise, force, keep = rng.standard_normal((ROWS, 2)) * np.radians([0.05, 0.02]), 0.0, np.exp(-DT / 5.0)
     for k in range(ROWS - 1):
-        course = np.radians(10.0) * (1.0 if int(k * DT // 60.0) % 2 == 0 else -1.0)
+        course = 0.0 if is_coarse else np.radians(10.0) * (1.0 if int(k * DT // 60.0) % 2 == 0 else -1.0)
         order = course - psi[k] - noise[k, 0] - 4.0 * (r[k] + noise[k, 1]) if is_closed else bits[k]
+        order = np.radians(np.round(np.degrees(order))) if is_coarse else order
         delta[k + 1] = delta[k] + np.clip(order - delta[k], -0.01, 0.01)
         force = keep * force + np.sqrt(1.0 - keep**2) * gust * rng.standard_normal()
         r[k + 1] = r[k] + DT / T * (K * (delta[k] + force) - r[k])
@@ -38,6 +42,15 @@ def test_a_controller_is_found(seed: int) -> None:
     (finding,) = feedback_findings(record)
     assert finding.code == "feedback"
     assert "prediction error with a disturbance model" in finding.message
+
+
+def test_a_controller_is_found_whose_orders_are_coarse() -> None:
+    """From sample to sample the steps of its orders hide what it answers: means of samples show it."""
+    record = steered(2, is_closed=True, gust=np.radians(0.4), is_coarse=True)
+    half = Record.from_arrays("run", record.time[::5], {n: record[n][::5] for n in ("delta", "psi")})
+    (test,) = feedback_tests(half)
+    assert test.has_feedback
+    assert test.lag > half.dt
 
 
 @pytest.mark.parametrize("seed", range(3))

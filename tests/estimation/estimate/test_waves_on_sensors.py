@@ -7,6 +7,7 @@ from scipy.linalg import expm
 
 from seatrial.core.values import Record
 from seatrial.estimation.estimate.assemble import Runs
+from seatrial.estimation.estimate.disturbance_models import with_waves_only
 from seatrial.estimation.estimate.fit import Estimation, estimate_model
 from seatrial.estimation.estimate.settings import EstimatorOptions
 from seatrial.physics.models.nomoto import nomoto
@@ -76,6 +77,19 @@ def test_the_waves_are_found_and_said(estimation: Estimation) -> None:
     assert noise.measurement["psi"] == pytest.approx(np.hypot(RMS, NOISE), rel=0.25)
     assert noise.wave_cost is not None and noise.wave_cost >= 1.0
     assert noise.wave_sentences[0].startswith("Waves of 7") or noise.wave_sentences[0].startswith("Waves of 8")
+
+
+def test_a_peak_that_is_none_leaves_the_gusts_beside_it(estimation: Estimation) -> None:
+    """Without its peak the disturbance is gusts alone, as likely as with a peak that moves nothing."""
+    noise, local = estimation.process_noise, np.zeros((0, 0))
+    assert noise is not None
+    alone = with_waves_only(noise, [False])
+    problem, still = noise.problem, noise.optimum.solution.point.copy()
+    still[problem.runs.size + len(problem.process) + 2] = 0.0  # the variance of psi, after frequency and damping
+    assert alone.name == "first-order Markov on r"
+    assert alone.unknown_count == 2
+    assert alone.cost == pytest.approx(problem.cost(still, local), rel=1e-9)
+    assert with_waves_only(noise, [True]).cost == pytest.approx(noise.optimum.normal.cost, rel=1e-9)
 
 
 def test_gusts_that_lead_output_error_astray_are_searched_from_elsewhere() -> None:

@@ -24,6 +24,7 @@ from seatrial.estimation.estimate.disturbance_models import (
     wave_forces,
     wave_motion,
     white_intensities,
+    with_waves_only,
 )
 from seatrial.estimation.estimate.disturbance_tests import CONFIDENCE_LEVEL, likelihood_ratio_test
 from seatrial.estimation.estimate.newton_refinement import refine_by_newton
@@ -385,7 +386,7 @@ class _Search:
             if not begun[k].is_searched:
                 searched = [f for f in ends if f is not None and f.is_searched]
                 ends[k] = self._ended(begun[k], max((_needed(begun[k], f) for f in searched), default=-np.inf))
-        return [f for f in ends if f is not None]
+        return _likeliest_of_each_name([f for f in ends if f is not None])
 
     def _ended(self, one: FittedDisturbance, log_likelihood: float) -> FittedDisturbance | None:
         """A candidate at its optimum, or as far as it may still become so likely."""
@@ -408,13 +409,28 @@ class _Search:
         return log_likelihood - one.log_likelihood < _REACH * one.noise.newton_decrement
 
     def _refined(self, one: FittedDisturbance) -> FittedDisturbance | None:
+        """A candidate at its optimum; without a peak that ends slower than waves are: gusts are, or the craft."""
         name = one.noise.disturbance_model
         with suppress(np.linalg.LinAlgError):  # as in `_approached`
             exact, optimum, decrement = refine_by_newton(one.noise.problem, one.noise.optimum)
-            point = optimum.solution.point
-            if not is_lost(self.white.output_error, point) and not _is_slower_than_waves(exact, point):
-                return FittedDisturbance(_tested(self.white, name, exact, optimum, decrement), one.unknown_count)
+            if not is_lost(self.white.output_error, optimum.solution.point):
+                noise = _tested(self.white, name, exact, optimum, decrement)
+                if all(kept := _are_waves(noise)):
+                    return FittedDisturbance(noise, one.unknown_count)
+                fewer = with_waves_only(noise, kept)
+                begun = self.begun([fewer]) if fewer.unknown_count else []
+                return self._refined(begun[0]) if begun else None
         return None
+
+
+def _likeliest_of_each_name(fitted: Sequence[FittedDisturbance]) -> list[FittedDisturbance]:
+    """Candidates without those of the same disturbance that end at a lower optimum."""
+    best: dict[str, FittedDisturbance] = {}
+    for one in fitted:
+        other = best.setdefault(one.noise.disturbance_model, one)
+        if one.log_likelihood > other.log_likelihood:
+            best[one.noise.disturbance_model] = one
+    return list(best.values())
 
 
 def _needed(one: FittedDisturbance, other: FittedDisturbance) -> float:
@@ -426,10 +442,11 @@ def _needed(one: FittedDisturbance, other: FittedDisturbance) -> float:
     return other.log_likelihood + (0.5 * critical_gain(extra) if extra > 0 else -critical_gain(one.unknown_count))
 
 
-def _is_slower_than_waves(problem: PredictionError, point: Array) -> bool:
-    """Whether motion at a peak on the sensors would be slower still than waves may be: gusts are, or the craft."""
-    frequencies = slice(0, 2 * problem.waves.peaks, 2)
-    return bool(np.any(problem.wave_unknowns(point)[frequencies] <= problem.wave_bounds[0][frequencies]))
+def _are_waves(noise: ProcessNoise) -> list[bool]:
+    """Whether motion at each peak on the sensors is as fast as waves may be."""
+    problem, frequencies = noise.problem, slice(0, 2 * noise.problem.waves.peaks, 2)
+    slowest = problem.wave_bounds[0][frequencies]
+    return (problem.wave_unknowns(noise.optimum.solution.point)[frequencies] > slowest).tolist()
 
 
 def _tested(

@@ -189,6 +189,22 @@ def _wave_motion(base: ProcessNoise, peak: SpectralPeak, damping: float) -> Dist
     return _described(base, problem, np.clip(moved, problem.lower, problem.upper))
 
 
+def with_waves_only(base: ProcessNoise, kept: Sequence[bool]) -> DisturbanceModel:
+    """The same disturbance with some of its peaks on the sensors only, begun where `base` is.
+
+    kept: of each peak whether it stays.
+    """
+    old, point = base.problem, base.optimum.solution.point
+    unknowns, first, count = old.wave_unknowns(point), old.runs.size + len(old.process), old.waves.peaks
+    shapes, sizes = unknowns[: 2 * count].reshape(count, 2), unknowns[2 * count :].reshape(count, -1)
+    waves = replace(old.waves, peaks=sum(kept)) if any(kept) else WaveMotion()
+    rows = np.flatnonzero(kept)
+    moved = np.concatenate([
+        point[:first], shapes[rows].ravel(), sizes[rows].ravel(), point[first + len(unknowns) :],
+    ])  # fmt: skip
+    return _described(base, replace(old, waves=waves, steps=None), moved)
+
+
 def _motions(channels: Sequence[str], peak: SpectralPeak) -> list[str]:
     return [motion_of(c) for c, v in zip(channels, peak.variance, strict=True) if v > 0.0]
 
