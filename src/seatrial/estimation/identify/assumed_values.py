@@ -280,7 +280,9 @@ def _added_inputs(problem: OutputError, item: TrialRecord, way: BoxForceError) -
 
 # probability below which a spread between runs is no chance; chosen: with some five coefficients tested
 _CHANCE = 1e-3
-_LEAST_LEFT = 0.05  # of the sum of squares, as far as one linear step is trusted to explain it; chosen
+# share of the sum of squares that values of each run leave: no less, as far as one linear step is trusted to explain
+# it, and no more, or what moves the residuals is something else (waves, whose period a decay of its own follows); chosen
+_LEAST_LEFT, _MOST_LEFT = 0.05, 0.5
 _MOST_NAMED = 8  # runs that a message names; chosen
 
 
@@ -341,12 +343,15 @@ def _by_decay(estimation: Estimation) -> dict[str, tuple[Array, Array]]:
     """Return damping and restoring of each decay by itself and their errors: name -> (runs,), (runs,).
 
     By one Gauss-Newton step from the joint estimate, with the noise left when each has values of its own: else what
-    they differ by would pass for noise.
+    they differ by would pass for noise. None where these explain less than half of the residuals.
     """
     estimate, problem = estimation.shooting, estimation.shooting.problem
     by_run = one_step_by_run(estimate)
     squares = 2.0 * problem.cost(estimate.common_parameters, estimate.optimum.local)
-    left = np.sqrt(max(1.0 - float(np.sum(by_run.decreases)) / squares, _LEAST_LEFT))
+    share = 1.0 - float(np.sum(by_run.decreases)) / squares
+    if share > _MOST_LEFT:
+        return {}
+    left = np.sqrt(max(share, _LEAST_LEFT))
     columns = {n: problem.free.index(n) for n in (*DAMPING_NAMES, *RESTORING_NAMES) if n in problem.free}
     return {n: (by_run.values[:, k], left * by_run.deviations[:, k]) for n, k in columns.items()}
 
