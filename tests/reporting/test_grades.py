@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.reporting.test_course import unstable, with_course
 
+from seatrial.cli.next_steps import after_fit
 from seatrial.core.results import ChannelScore, Divergence, Fit, Prediction, WindowScore
 from seatrial.core.results.prediction import motion_spreads
 from seatrial.core.values import Record
@@ -22,6 +24,7 @@ from seatrial.reporting.verdict import (
     largest_error_share,
     longest_judged,
     run_error,
+    verdict,
     window_shares,
     worst_share,
 )
@@ -124,6 +127,17 @@ def test_windows_judge_a_craft_that_the_estimated_disturbance_carries_off(fit: F
     assert longest_judged(calm) is None
     shown = replace(fit.noise_model, disturbance="waves on the sensors", process={})
     assert longest_judged(replace(gusty, noise_model=shown)) is None  # they carry no craft off
+
+
+def test_a_miss_that_the_disturbance_leaves_is_said_to_be_so(fit: Fit, tmp_path: Path) -> None:
+    assert fit.noise_model is not None
+    missed = replace(ramp_in_windows(fit, 40.0, (30.0, 80.0)), noise_floor={"psi_deg": 39.0})
+    gusty = replace(fit, predictions=(missed,), noise_model=replace(fit.noise_model, disturbance="white"))
+    calm = replace(gusty, noise_model=replace(fit.noise_model, disturbance="none"))
+    assert verdict(gusty).endswith("; the estimated disturbance alone leaves most of that.")
+    assert after_fit(gusty, tmp_path).endswith("judge the model over short windows")
+    assert "disturbance" not in verdict(calm)
+    assert after_fit(calm, tmp_path).endswith("correct the fit before it is used")
 
 
 def test_a_disturbance_excuses_no_error_of_which_it_has_no_floor(fit: Fit) -> None:

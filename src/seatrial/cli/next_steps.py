@@ -34,13 +34,18 @@ def after_fit(fit: "Fit", folder: Path, trial: Path | None = None) -> str:
 
     trial: the file whose runs are replayed where the model steers no manoeuvre; None: there is none.
     """
-    from seatrial.reporting.verdict import is_missed
+    from seatrial.reporting.verdict import is_carried, is_missed
 
     runs = sum(p.role == "training" for p in fit.predictions)
     if trial is not None and not fit.validation and runs > 1:
         return f'name a run to hold out in {in_shell(trial)}, validate = "...", and identify again'
     if is_missed(fit):
-        return "docs/bad-fit.md, By symptom: the held-out run is not predicted, so correct the fit before it is used"
+        cause = (
+            "the disturbance carries the craft as far: judge the model over short windows"
+            if is_carried(fit)
+            else ("the held-out run is not predicted, so correct the fit before it is used")
+        )
+        return f"docs/bad-fit.md, By symptom: {cause}"
     model = in_shell(folder / "model.toml")
     if fit.model.has_thrusters:
         return _craft_step(fit, model)

@@ -48,7 +48,6 @@ MAX_GROWTH = 100.0
 """Growth of a deviation over the windows that judge a course-unstable craft: a hundredth becomes the whole; chosen."""
 _CARRIED = ("psi_deg", "position_m")
 """Errors of which a disturbance that moves the craft has a floor; waves on sensors alone carry nothing off."""
-_EXPLAINED = 0.7  # share of an error from which on a disturbance is said to leave it; chosen
 _ROUNDING = 1e-9  # of a window, by which time stamps are rounded
 
 
@@ -163,7 +162,7 @@ def is_disturbed(fit: Fit, p: Prediction, share: ErrorShare) -> bool:
     noise = fit.noise_model
     if noise is None or noise.disturbance == "none" or share.name not in _CARRIED or not any(noise.process.values()):
         return False
-    return p.noise_floor.get(share.name, share.rms) >= _EXPLAINED * share.rms  # no floor: it would leave more
+    return p.is_left_by_disturbance(share.name, share.rms)
 
 
 def judging_window(p: Prediction, longest: float) -> WindowScore | None:
@@ -206,6 +205,11 @@ def is_missed(fit: Fit) -> bool:
     largest = worst_share(fit)
     is_beyond = largest is not None and largest.grade is Grade.NOT
     return is_beyond or any(p.divergence is not None for p in fit.validation)
+
+
+def is_carried(fit: Fit) -> bool:
+    """Return whether the disturbance that was estimated leaves most of the errors of held-out runs by itself."""
+    return longest_judged(fit) == math.inf
 
 
 def graded_errors(fit: Fit) -> str:
@@ -259,6 +263,7 @@ MAX_ERRORS = 2
 ONE_SIDED = 1.25
 # rad below which the rudder is not over
 LEAST_RUDDER = math.radians(0.5)
+_CARRIED_CLAUSE = "the estimated disturbance alone leaves most of that"
 _MAIN_ERRORS = ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
 
 
@@ -318,7 +323,7 @@ def _one_run_clauses(p: Prediction, predictions: Sequence[Prediction], longest: 
         return f"Does not predict {run}: the simulation diverges after {duration(p.divergence.seconds)}", ""
     largest, errors = judged_share(p, longest), _judged_errors(p, longest)
     if largest is not None and largest.grade is Grade.NOT:
-        return f"Does not predict {run}: {errors}", ""
+        return f"Does not predict {run}: {errors}", _CARRIED_CLAUSE if longest == math.inf else ""
     grade = "" if largest is None else f" {largest.grade}"
     repeat = "it repeats a fitted manoeuvre" if repeated_runs(p, predictions) else ""
     return f"Predicts {run}{grade}{f': {errors}' if errors else ''}", repeat
@@ -361,6 +366,7 @@ def _several_runs_clauses(
         verb = "Does not predict" if worst is Grade.NOT else "Predicts poorly"
         graded = _graded([grades.get(p.record) for p in others])
         remainder = f"the other{'s' if len(others) > 1 else ''}{graded}" if graded else ""
+        remainder = remainder or (_CARRIED_CLAUSE if longest == math.inf else "")
         return f"{verb} {len(names)} of {len(held)} held-out runs{_worst_errors(missed, longest)}", remainder
     repeats = sum(bool(repeated_runs(p, predictions)) for p in held)
     repeat = f"{repeats} {'repeats' if repeats == 1 else 'repeat'} a fitted manoeuvre" if repeats else ""

@@ -80,3 +80,13 @@ def test_nothing_is_said_of_a_craft_whose_runs_leave_any_model(
 
 def test_a_term_that_the_held_out_run_needs_is_not_named() -> None:
     assert "term-worsens-prediction" not in [f.code for f in fitted(3.0, "alpha").findings]
+
+
+def test_nothing_is_said_of_runs_whose_errors_the_disturbance_leaves(
+    examined: tuple[Fit, Estimation, Sequence[Prediction]],
+) -> None:
+    _, estimation, predictions = examined
+    carried = [replace(p, noise_floor=dict(p.rms)) for p in predictions]
+    plain = replace(estimation, noise_model=replace(estimation.noise_model, method="output error"))
+    assert needless_term_findings(estimation, carried) == ()
+    assert len(needless_term_findings(plain, carried)) == 1  # output error: the floor holds errors of the model

@@ -235,6 +235,9 @@ class Divergence:
     ] = ()
 
 
+_EXPLAINED = 0.7  # share of an error from which on a disturbance is said to leave it; chosen
+
+
 @dataclass(frozen=True, eq=False)
 class Prediction:
     """One run simulated open loop, compared with its measurement."""
@@ -282,6 +285,13 @@ class Prediction:
     windows: Annotated[
         tuple[WindowScore, ...], Field(description="windows of the run, each predicted by itself; validation runs only")
     ] = ()
+
+    def is_left_by_disturbance(self, name: str, error: float) -> bool:
+        """Return whether the process noise of the fit leaves most of an error, a key of `rms`, by itself.
+
+        Where its floor is not known, it would leave more.
+        """
+        return self.noise_floor.get(name, error) >= _EXPLAINED * error
 
     @property
     def is_reference_simulated(self) -> bool:

@@ -281,7 +281,7 @@ def _added_inputs(problem: OutputError, item: TrialRecord, way: BoxForceError) -
 # probability below which a spread between runs is no chance; chosen: with some five coefficients tested
 _CHANCE = 1e-3
 # share of the sum of squares that values of each run leave: no less, as far as one linear step is trusted to explain
-# it, and no more, or what moves the residuals is something else (waves, whose period a decay of its own follows); chosen
+# it, and no more, or something else moves the residuals (waves, whose period a decay of its own follows); chosen
 _LEAST_LEFT, _MOST_LEFT = 0.05, 0.5
 _MOST_NAMED = 8  # runs that a message names; chosen
 

@@ -53,11 +53,12 @@ def needless_term_findings(
     the least cost (Seber & Wild 1989, Nonlinear Regression, section 5.4: to first order, not fitted again). Terms with
     a prior, those whose bounds exclude 0, and the resistance and damping that every craft has stay.
 
-    course: of a craft that is course unstable, nothing is said: its runs leave any model.
+    course: of a craft that is course unstable, nothing is said: its runs leave any model. So do those of which the
+    disturbance that was estimated leaves most of the errors by itself.
     """
     if course is not None and course.is_unstable:
         return ()
-    held = judged_runs(predictions)
+    held = [p for p in judged_runs(predictions) if not (estimation.has_process_noise and _is_carried(p))]
     if not held:
         return ()
     names, parameters = estimation.estimate.problem.free, estimation.model.parameters
@@ -87,6 +88,11 @@ def judged_runs(predictions: Sequence[Prediction]) -> list[Prediction]:
     return [
         p for p in predictions if p.role == "validation" and p.divergence is None and set(COMPARED_ERRORS) & set(p.rms)
     ]
+
+
+def _is_carried(p: Prediction) -> bool:
+    """Whether the disturbance leaves most of every error that is compared."""
+    return all(p.is_left_by_disturbance(key, p.rms[key]) for key in COMPARED_ERRORS if key in p.rms)
 
 
 def in_windows(estimation: Estimation, held: Sequence[Prediction]) -> list[Prediction]:
