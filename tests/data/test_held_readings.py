@@ -61,6 +61,24 @@ def test_a_frozen_compass_that_catches_up(rng: np.random.Generator) -> None:
     assert np.flatnonzero(~mask).tolist() == list(range(700, 750))
 
 
+def test_a_frozen_compass_that_begins_again_near_where_it_stopped(rng: np.random.Generator) -> None:
+    """The ship has turned to and fro meanwhile: the jump is small, the stay is like no other."""
+    time = 0.2 * np.arange(1500)
+    psi = np.round(40.0 * np.sin(time / 15.0) + 0.05 * rng.standard_normal(1500), 1)
+    psi[90:145] = psi[89]
+    assert 0.15 < abs(psi[145] - psi[89]) < 0.6
+    mask = slower_channels({"psi": psi}, time)["psi"]
+    assert np.flatnonzero(~mask).tolist() == list(range(90, 145))
+
+
+def test_a_straight_course_in_whole_degrees_is_not_frozen() -> None:
+    """Stays of every length are those of legs, some far longer than most."""
+    time = np.arange(3000.0)
+    legs = np.repeat([10.0, 12.0, 40.0, 41.0, 10.0, 25.0], [200, 40, 900, 60, 1500, 300])
+    psi = np.round(np.convolve(np.pad(legs, 30, mode="edge"), np.ones(61) / 61.0, mode="valid"))
+    assert "psi" not in slower_channels({"psi": psi}, time)
+
+
 def test_between_readings_angles_go_the_shorter_way() -> None:
     values, is_measured = np.radians([350.0, 350.0, 10.0]), np.array([True, False, True])
     assert np.cos(between_readings(values, is_measured, is_angle=True)[1]) == pytest.approx(1.0)
