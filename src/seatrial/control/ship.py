@@ -23,7 +23,7 @@ from seatrial.physics.loops import Block, TransferLoop
 from seatrial.physics.loops.loop_states import plant_model
 from seatrial.physics.models.thrust_orders import YAW
 from seatrial.physics.simulate.linear import LinearSystem
-from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
+from seatrial.core.equations.model import ZERO_BY_DEFAULT
 from seatrial.physics.simulate.states import approach_speed, balancing_input, held_inputs, settled_actuators
 
 # An identified model at another scale, by Froude's law: that of a ship from the trials of its model.

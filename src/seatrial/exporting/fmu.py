@@ -39,7 +39,7 @@ from seatrial.exporting.source import (
 )
 from seatrial.numerics.kernels.integrate import DIVERGED
 from seatrial.numerics.platform import library_suffix, system_name
-from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
+from seatrial.core.equations.model import ZERO_BY_DEFAULT
 
 if TYPE_CHECKING:
     from fmpy.fmi2 import FMU2Slave

@@ -24,7 +24,8 @@ from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.information.extrapolation import motion_envelope
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.physics.simulate.linear import batch_class
-from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT, state_limits
+from seatrial.core.equations.model import ZERO_BY_DEFAULT
+from seatrial.physics.simulate.replay import state_limits
 from seatrial.physics.simulate.steer import RUDDER_RATE, rudder_rate
 
 # Manoeuvres that could come next, and the information each would add at the present estimate.

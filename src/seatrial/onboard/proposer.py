@@ -31,7 +31,7 @@ from seatrial.data.trial import Role, Trial
 from seatrial.data.trial.runs import expand_variables, require_stream
 from seatrial.data.trial.settings import ProposalSettings
 from seatrial.estimation.identify.online import OnlineEstimator
-from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
+from seatrial.core.equations.model import ZERO_BY_DEFAULT
 from seatrial.physics.simulate.states import hidden_states, unobserved_states
 
 # Whether a stream has the channels its model needs, checked before anything is started.

@@ -25,13 +25,13 @@ from seatrial.core.values import InputError, si_unit, spelling_hint
 
 # Amounts of trial and loop files: a number with its unit, a plain SI value once validated.
 
-STRICT_FIELDS = ConfigDict(extra="forbid", allow_inf_nan=False)
+STRICT_FIELDS = ConfigDict(extra="forbid", allow_inf_nan=False, defer_build=True)
 
 
 class StrictTable(BaseModel):
     """A table of a file: no unknown keys, immutable."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, defer_build=True)
 
 
 def _valid_unit(unit: object) -> object:

@@ -18,7 +18,8 @@ from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE, OPTIONS, kernel
 from seatrial.physics.loops import Block
 from seatrial.physics.models.thrust_orders import AHEAD, YAW, with_orders, work_shares
 from seatrial.physics.models.thruster_layout import ThrusterLayout, layout_of
-from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT, trajectory
+from seatrial.core.equations.model import ZERO_BY_DEFAULT
+from seatrial.physics.simulate.replay import trajectory
 from seatrial.physics.simulate.thrust import DEFAULT_AHEAD
 
 # A craft as ArduPilot steers it: shares of full steering and throttle in, heading, yaw rate and speed out.
