@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.equations.model import RUDDER
+from seatrial.core.equations.model import RUDDER, ZERO_BY_DEFAULT
 from seatrial.core.values import NOTATION, Array, Index, InputError, Record, spelling_hint
 from seatrial.numerics.local_polynomials import smoothed_locally
 from seatrial.physics.sensors.measured_outputs import is_late
-from seatrial.core.equations.model import ZERO_BY_DEFAULT
 from seatrial.physics.simulate.replay import inputs_of
 
 if TYPE_CHECKING:
