@@ -116,8 +116,8 @@ def save(result: "Result | Snapshot | FollowResult", folder: str | Path) -> Path
     from seatrial.reporting.pages import report_page
 
     # asked this way round, no result but that of `follow` needs its module
-    is_result = isinstance(result, results.Summarised) or isinstance(result, results.Snapshot)
-    value = result if is_result else result.result
+    is_shown = isinstance(result, results.Summarised)
+    value = result if is_shown or isinstance(result, results.Snapshot) else result.result
     page = {REPORT: report_page(value).encode()} if isinstance(value, results.Summarised) else {}
     files = folder_files(value) | page
     return write_files_atomically(Path(folder), files, replaced_files(value)) / list(files)[-1]

@@ -279,6 +279,11 @@ class OutputError:
                 first = s
         return edges
 
+    @property
+    def _threads(self) -> int | None:
+        """The threads of one evaluation: that of the caller where two would not both have their fill."""
+        return self.workers if len(self.data.measured) >= 2 * _ROWS_PER_RANGE else 1
+
     def _scaled_residuals(self, simulated: Array, rows: slice) -> Array:
         residual = (simulated - self.data.measured[rows]) / self.noise
         return np.where(np.isfinite(self.data.measured[rows]), residual, 0.0)
@@ -347,7 +352,7 @@ class OutputError:
         """Return simulated outputs of all segments, shape (rows, ny); NaN after a divergence."""
         start, values, corrections = self.unpack(shared, local)
         pieces = map_in_threads(lambda p: self._batch.simulate(*p, start, values, corrections)[0], self._work_ranges(),
-                        workers=self.workers)  # fmt: skip
+                        workers=self._threads)  # fmt: skip
         return np.concatenate(pieces)
 
     def cost(self, shared: Array, local: Array) -> float:
@@ -394,7 +399,7 @@ class OutputError:
                 hessians.append(jacobian.T @ jacobian)
             return np.array(costs), np.array(gradients), np.array(hessians)
 
-        parts = map_in_threads(piece, self._work_ranges(), workers=self.workers)
+        parts = map_in_threads(piece, self._work_ranges(), workers=self._threads)
         costs, gradients, hessians = (np.concatenate([p[i] for p in parts]) for i in range(3))
         mean, weight = self.initial_prior
         costs += 0.5 * np.sum(weight * (local - mean) ** 2, axis=1)
@@ -409,7 +414,7 @@ class OutputError:
         parts = map_in_threads(
             lambda p: self._differentiate(p, start, values, corrections, by_actuator)[1],
             self._work_ranges(),
-            workers=self.workers,
+            workers=self._threads,
         )
         return np.concatenate(parts)
 
@@ -424,7 +429,7 @@ class OutputError:
             rows = slice(self.data.offsets[bounds[0]], self.data.offsets[bounds[1]])
             return np.einsum("tyf,ty->yf", s[:, :, : len(self.free)] ** 2, known[rows].astype(float))
 
-        total = np.sum(map_in_threads(piece, self._work_ranges(), workers=self.workers), axis=0)
+        total = np.sum(map_in_threads(piece, self._work_ranges(), workers=self._threads), axis=0)
         return np.sqrt(total / np.maximum(known.sum(axis=0), 1)[:, None]) / self.noise[:, None]
 
     def normal(self, shared: Array, local: Array) -> NormalEquations:
