@@ -25,7 +25,7 @@ from seatrial.core.values import InputError, si_unit, spelling_hint
 
 # Amounts of trial and loop files: a number with its unit, a plain SI value once validated.
 
-STRICT_FIELDS = ConfigDict(extra="forbid", allow_inf_nan=False, defer_build=True)
+STRICT_FIELDS = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
 class StrictTable(BaseModel):

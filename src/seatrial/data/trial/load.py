@@ -5,9 +5,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-import tomlkit
 from pydantic import ValidationError
-from tomlkit.exceptions import TOMLKitError
 
 from seatrial.core.equations import Model
 from seatrial.core.values import (
@@ -376,6 +374,9 @@ def edited_text(text: str, path: Path, index: int, edits: tuple[TrialEdit, ...])
     Raises:
         InputError: the block has no such key.
     """
+    import tomlkit
+    from tomlkit.exceptions import TOMLKitError
+
     block = _tables(text, path).records[index]
     try:
         document = tomlkit.parse(text)

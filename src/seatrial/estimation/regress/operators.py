@@ -173,11 +173,13 @@ class WeakForm:
     dt: float
     half_width: float
     residual_sd: Array
-    known: dict[bytes, tuple[Array, Array]] = field(default_factory=dict)
+    known: dict[bytes, tuple[Array, Array]] = field(default_factory=dict, init=False)
 
     def weighted(self, residual_sd: Array) -> "WeakForm":
         """Return it with other standard deviations of the residuals."""
-        return replace(self, residual_sd=residual_sd)
+        made = replace(self, residual_sd=residual_sd)
+        made.known.update(self.known)
+        return made
 
     @property
     def _free(self) -> Sequence[int]:

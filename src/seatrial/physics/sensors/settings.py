@@ -48,7 +48,7 @@ Starts = Annotated[Mapping[Late, float], BeforeValidator(_as_starts)]
 """Instrument -> lag [s] at which a search begins; a list of instruments stands for `LAG_START`."""
 
 
-_STRICT = ConfigDict(extra="forbid", allow_inf_nan=False, defer_build=True)
+_STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
 @validated(frozen=True, config=_STRICT)
