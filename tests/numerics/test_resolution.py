@@ -45,3 +45,12 @@ def test_the_step_of_numbers_of_three_digits_grows_with_them(rng: np.random.Gene
     noise = rng.normal(size=3000)
     assert np.median(local_resolution(noise)) < 1e-3 * np.median(np.abs(np.diff(noise)))
     assert np.isnan(local_resolution(np.array([np.nan, 1.0]))[0]) and not local_resolution(np.full(3, 2.0)).any()
+
+
+def test_a_step_finer_than_the_least_that_counts_may_be_left_out(rng: np.random.Generator) -> None:
+    for size, digits in ((30, 2), (400, 3), (3000, 1)):  # steps in one go, and one by one
+        values = np.round(np.cumsum(rng.normal(size=size)), digits)
+        step = resolution(values)
+        assert step > 0.0
+        assert resolution(values, least=0.5 * step) == step
+        assert max(resolution(values, least=50.0), 50.0) == 50.0

@@ -110,17 +110,14 @@ def save(result: "Result | Snapshot | FollowResult", folder: str | Path) -> Path
     Raises:
         InputError: the folder cannot be written.
     """
-    from seatrial.core.results import Comparison, Design, Fit, Study
-    from seatrial.core.results.online import Snapshot
-    from seatrial.core.results.tuning import Tuning
-    from seatrial.core.results.verification import Verification
+    from seatrial.core import results
     from seatrial.core.values.files import write_files_atomically
     from seatrial.data.folder.result_folder import REPORT, folder_files, replaced_files
     from seatrial.reporting.pages import report_page
 
     # asked this way round, no result but that of `follow` needs its module
-    is_result = isinstance(result, Fit | Design | Tuning | Study | Comparison | Verification | Snapshot)
-    value = result if is_result else result.result
-    page = {} if isinstance(value, Snapshot) else {REPORT: report_page(value).encode()}
+    is_shown = isinstance(result, results.Summarised)
+    value = result if is_shown or isinstance(result, results.Snapshot) else result.result
+    page = {REPORT: report_page(value).encode()} if isinstance(value, results.Summarised) else {}
     files = folder_files(value) | page
     return write_files_atomically(Path(folder), files, replaced_files(value)) / list(files)[-1]

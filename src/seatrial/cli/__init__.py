@@ -9,20 +9,21 @@ from pathlib import Path
 from seatrial.cli.commands import app
 
 INPUT_EXIT_CODE, INTERNAL_EXIT_CODE, INTERRUPT_EXIT_CODE = 2, 70, 130  # 70: EX_SOFTWARE of sysexits.h
-# new objects between two searches for unreachable cycles: most are modules and classes that live as long as the
-# process; chosen: Python's own 700 costs a sixteenth of the time of a command
-COLLECTION_THRESHOLD = 50_000
-# matrices are small and work is shared out over runs: threads of the linear algebra would wait for one another, and
-# round differently from machine to machine; read when NumPy is first imported
-_ALGEBRA_THREADS = {"OPENBLAS_NUM_THREADS": "1"}
+# new objects between two searches for unreachable cycles; chosen: more than the 215,000 modules, classes and functions
+# that an identification imports, all of which live as long as the process
+COLLECTION_THRESHOLD = 250_000
+# read when NumPy and pydantic are first imported: matrices are small and work is shared out over runs, so that threads
+# of the linear algebra would wait for one another, and round differently from machine to machine; plugins of pydantic
+# have no part in reading a file, and looking for them opens every package that is installed
+_LIBRARIES = {"OPENBLAS_NUM_THREADS": "1", "PYDANTIC_DISABLE_PLUGINS": "__all__"}
 _INTERRUPT_MESSAGE = "seatrial: interrupted; files are written whole or not at all"
 
 
 def main() -> None:
     """Run the command line; bad input is one line on standard error, and so is an error of the program itself."""
     gc.set_threshold(COLLECTION_THRESHOLD)
-    for variable, threads in _ALGEBRA_THREADS.items():
-        os.environ.setdefault(variable, threads)
+    for variable, value in _LIBRARIES.items():
+        os.environ.setdefault(variable, value)
     _prepare_streams()
     try:
         try:

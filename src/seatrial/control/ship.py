@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from seatrial.control.task import TrimmedShip, TuningTask
 from seatrial.core.equations import Model
-from seatrial.core.equations.model import RUDDER
+from seatrial.core.equations.model import RUDDER, ZERO_BY_DEFAULT
 from seatrial.core.values import NOTATION, Array, InputError, Parameter, Parameters, frozen, spelling_hint
 from seatrial.core.values.record import froude_factor
 from seatrial.data.folder.model_file import ModelFile
@@ -23,7 +23,6 @@ from seatrial.physics.loops import Block, TransferLoop
 from seatrial.physics.loops.loop_states import plant_model
 from seatrial.physics.models.thrust_orders import YAW
 from seatrial.physics.simulate.linear import LinearSystem
-from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
 from seatrial.physics.simulate.states import approach_speed, balancing_input, held_inputs, settled_actuators
 
 # An identified model at another scale, by Froude's law: that of a ship from the trials of its model.

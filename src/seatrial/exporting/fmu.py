@@ -18,6 +18,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from seatrial.core.equations.model import ZERO_BY_DEFAULT
 from seatrial.core.text.words import printable
 from seatrial.core.values import NOTATION, Array, Channel, InputError, Provenance, Record, RecordKind, frozen
 from seatrial.data.read.log import require_library
@@ -39,7 +40,6 @@ from seatrial.exporting.source import (
 )
 from seatrial.numerics.kernels.integrate import DIVERGED
 from seatrial.numerics.platform import library_suffix, system_name
-from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
 
 if TYPE_CHECKING:
     from fmpy.fmi2 import FMU2Slave

@@ -9,7 +9,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.equations.model import RUDDER
+from seatrial.core.equations.model import RUDDER, ZERO_BY_DEFAULT
 from seatrial.core.results.online import EstimatorPhase, Snapshot
 from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, InputError, Record
@@ -24,7 +24,7 @@ from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.information.extrapolation import motion_envelope
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.physics.simulate.linear import batch_class
-from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT, state_limits
+from seatrial.physics.simulate.replay import state_limits
 from seatrial.physics.simulate.steer import RUDDER_RATE, rudder_rate
 
 # Manoeuvres that could come next, and the information each would add at the present estimate.

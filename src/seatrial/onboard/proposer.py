@@ -20,6 +20,7 @@ from seatrial.control.proposals import (
 from seatrial.control.schedule import gain_schedule
 from seatrial.control.task import Seaway, TuningTask
 from seatrial.control.verification.stabiliser import natural_period
+from seatrial.core.equations.model import ZERO_BY_DEFAULT
 from seatrial.core.results.online import Proposal, Sample, Snapshot
 from seatrial.core.values import Array, Channel, InputError, Record
 from seatrial.core.values.files import write_atomically
@@ -31,7 +32,6 @@ from seatrial.data.trial import Role, Trial
 from seatrial.data.trial.runs import expand_variables, require_stream
 from seatrial.data.trial.settings import ProposalSettings
 from seatrial.estimation.identify.online import OnlineEstimator
-from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
 from seatrial.physics.simulate.states import hidden_states, unobserved_states
 
 # Whether a stream has the channels its model needs, checked before anything is started.

@@ -162,3 +162,16 @@ def test_what_was_not_measured_stays_marked_through_cuts_and_rates() -> None:
     slow = record.resampled(2.0)  # every fifth row: what was read in between counts at the nearest
     assert np.flatnonzero(np.isfinite(slow.measured("u")))[:2].tolist() == [1, 3]
     assert np.isfinite(plain.measured("u")).all() and plain.channel("u").with_measured(time >= 0.0).is_measured is None
+
+
+def test_what_is_computed_of_a_record_is_computed_once(record: Record) -> None:
+    calls = list[str]()
+
+    def duration(one: Record) -> float:
+        calls.append(one.name)
+        return one.duration
+
+    assert record.computed(duration) == record.computed(duration) == record.duration
+    other = record.renamed("run 2")
+    assert other.computed(duration) == record.duration
+    assert calls == ["run 1", "run 2"]

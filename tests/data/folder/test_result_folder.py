@@ -29,10 +29,11 @@ from seatrial.core.results import (
     Solution,
     Status,
 )
+from seatrial.core.results.fields import Summarised
 from seatrial.core.results.tuning import Tuning
 from seatrial.core.values import Finding, InputError, Record, RecordKind, Severity, Ship
 from seatrial.data.folder.document import document, strict_json
-from seatrial.data.folder.result_folder import Result, folder_files, load_fit, load_result, save_result
+from seatrial.data.folder.result_folder import folder_files, load_fit, load_result, save_result
 from seatrial.physics.models import model_named
 
 
@@ -80,7 +81,7 @@ def fit() -> Fit:
     )
 
 
-RESULTS: dict[str, Callable[[], Result]] = {
+RESULTS: dict[str, Callable[[], Summarised]] = {
     "fit": lambda: complete_fit(fabricated_fit()),
     "design": fabricated_design,
     "tuning": fabricated_fin,

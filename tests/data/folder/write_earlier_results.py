@@ -15,10 +15,11 @@ from tests.reporting.fabricated_study import fabricated_study
 from tests.reporting.fabricated_tuning import fabricated_fin
 from tests.reporting.test_verification import LEGS
 
-from seatrial.data.folder.result_folder import Result, save_result
+from seatrial.core.results import Summarised
+from seatrial.data.folder.result_folder import save_result
 
 FOLDER = Path(__file__).with_name("earlier_results")
-RESULTS: dict[str, Callable[[], Result]] = {
+RESULTS: dict[str, Callable[[], Summarised]] = {
     "fit": lambda: complete_fit(fabricated.fabricated_fit()),
     "design": fabricated_design,
     "tuning": fabricated_fin,

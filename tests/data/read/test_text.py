@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from seatrial.core.values import si_unit
+from seatrial.core.values import InputError, si_unit
 from seatrial.data.read import ColumnSpec, Layout, read_log, read_record
+from seatrial.data.read.formats import text
 
 TIME = ColumnSpec("time", "t", "s")
 NAMED = Layout("text", TIME, (ColumnSpec("u", "speed", "kn"), ColumnSpec("psi", "head", "deg")))
@@ -112,3 +113,27 @@ def test_a_comma_beside_decimal_points_is_no_decimal_sign(tmp_path: Path) -> Non
     heading, depth = read_log(tmp_path / "log.csv", layout).table_of(layout.time).cells[1:]
     assert list(heading) == [12.5, 12.7]
     assert list(depth) == ["1,234", "1,235"]
+
+
+@pytest.mark.parametrize(
+    "cells",
+    ["0,-0.5", "7,1e3", "-0,1.0", "007,.5", "9007199254740993,1", "1e400,1", "1,", "1,2,3", "nan,1", "x,1", "1 ,2", ""],
+)
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_plain_numbers_are_read_as_pandas_reads_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cells: str, end: str
+) -> None:
+    path = tmp_path / "run.csv"
+    path.write_bytes(end.join(["a,b", "3,0.25", cells, "-12,4.5", ""]).encode())
+    layout = Layout("text", ColumnSpec("time", 1, "s"), (), 1)
+
+    def columns() -> list[tuple[str, str]] | str:
+        try:
+            cells_read = text.read_text(path, layout).tables[0].cells
+        except InputError as error:
+            return str(error)
+        return [(str(np.asarray(c).dtype), repr([str(cell) for cell in c])) for c in cells_read]
+
+    by_numpy = columns()
+    monkeypatch.setattr(text, "_SMALL_BYTES", -1)
+    assert columns() == by_numpy

@@ -7,6 +7,7 @@ import pytest
 
 from seatrial.core.values import Array
 from seatrial.data.readings import ColumnReading, NamedColumn, ReadingVerdict, Samples, judge, judge_statements
+from seatrial.data.readings.terms import Relations
 
 DEGREE = np.pi / 180.0
 STEP = 0.2
@@ -134,3 +135,16 @@ def test_a_stated_unit_is_refuted_by_the_heading_and_named(factor: float, count:
     for entry in judged.refuted:
         assert entry.best.readings[0].factor == pytest.approx(DEGREE)
         assert entry.reason == "the rate of the heading" and entry.is_only and not judged.is_unexplained
+
+
+def test_readings_to_the_other_side_answer_the_rudder_with_the_other_sign() -> None:
+    signals = {"delta": TRUTH["delta"], "r": TRUTH["r"]}
+    plain = Relations((0.5,)).terms
+    rudder = next(term for term in plain if "delta" in term.roles[0])
+    nats = rudder.nats({slot: (values,) for slot, values in signals.items()})
+    assert nats != 0.0
+    for side in ("delta", "r"):
+        turned = {slot: (-values if slot == side else values,) for slot, values in signals.items()}
+        for relations in (plain, Relations((0.5,)).terms):  # what is known of the other side, and nothing
+            term = next(one for one in relations if "delta" in one.roles[0])
+            assert term.nats(turned) == -nats

@@ -40,6 +40,15 @@ def test_against_the_plain_sum(rng: np.random.Generator) -> None:
     np.testing.assert_allclose(autocorrelation([e], 8), np.array(direct) / direct[0], atol=1e-12)
 
 
+def test_pieces_of_one_length_count_as_one_by_one(rng: np.random.Generator) -> None:
+    pieces = [rng.standard_normal(length) for length in (*[40] * 30, 17, *[40] * 5, 3)]
+    total = np.zeros(13)
+    for e in pieces:
+        kept = min(12, len(e) - 1) + 1
+        total[:kept] += np.fft.irfft(np.abs(np.fft.rfft(e, 64)) ** 2, 64)[:kept]
+    np.testing.assert_allclose(autocorrelation(pieces, 12), total / total[0], atol=1e-14)
+
+
 def test_short_pieces_and_gaps(rng: np.random.Generator) -> None:
     e = rng.standard_normal(500)
     gappy = e.copy()

@@ -5,7 +5,7 @@ import pytest
 
 from seatrial.core.values import InputError, Record
 from seatrial.physics.models import model_named
-from seatrial.physics.simulate.states import hidden_states, measured_states, rest_parameter, unobserved_states
+from seatrial.physics.simulate.states import hidden_states, measured_states, unobserved_states
 
 TIME = np.arange(0.0, 20.0, 0.1)
 RATE = 0.05  # yaw rate of the record [rad/s]
@@ -45,5 +45,5 @@ def test_a_state_of_no_instrument_is_hidden() -> None:
 
 
 def test_a_state_at_rest_has_its_parameter() -> None:
-    assert rest_parameter(model_named("roll"), "phi") == "phi_0"
-    assert rest_parameter(model_named("roll"), "p") == "" and rest_parameter(model_named("nomoto"), "delta") == ""
+    assert model_named("roll").rest_parameter("phi") == "phi_0"
+    assert model_named("roll").rest_parameter("p") == "" and model_named("nomoto").rest_parameter("delta") == ""

@@ -17,12 +17,16 @@ from seatrial.core.equations.bindings import (
     stored,
 )
 from seatrial.core.values import Array, InputError, Parameter, Parameters, Ship
+from seatrial.core.values.notation import TWIN_DIFFERENCES
 
 # A model: equations, written once, and the values of their parameters.
 
 MEASURED = "_measured"
 RUDDER = "delta"
 """The input by which a ship with a rudder or nozzle is steered."""
+ZERO_BY_DEFAULT = ("wind_speed", "wind_direction", "F3", "M5", "delta_f1", "delta_f2", "alpha_w", "alpha_f",
+                   "depth", "bucket", *TWIN_DIFFERENCES.values())  # fmt: skip
+"""Inputs that are zero where they are not recorded; water of depth zero is deep."""
 
 
 def measured_name(channel: str) -> str:
@@ -96,6 +100,11 @@ class Model:
     def channels(self) -> tuple[str, ...]:
         """Names of the channels that a record can hold of it; readings of instruments by the channel they fill."""
         return tuple(o for o in self.observables if not o.endswith(MEASURED))
+
+    def rest_parameter(self, state: str) -> str:
+        """Return the parameter for a state's value at rest, ``phi_0`` of ``phi``; empty where the model has none."""
+        name = f"{state}_0"
+        return name if state in self.states and name in self.parameters else ""
 
     @property
     def equation_hash(self) -> str:

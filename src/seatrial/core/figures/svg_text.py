@@ -99,9 +99,10 @@ def visible_points(px: Array, py: Array) -> NDArray[np.bool_]:
         x, y = px[a + 1 : b] - px[a], py[a + 1 : b] - py[a]
         across, down = px[b] - px[a], py[b] - py[a]
         length = float(np.hypot(across, down))
-        share = np.clip((x * across + y * down) / length**2, 0.0, 1.0) if length > 0.0 else np.zeros_like(x)
+        along = (x * across + y * down) / length**2 if length > 0.0 else np.zeros_like(x)
+        share = np.minimum(np.maximum(along, 0.0), 1.0)
         distance = np.hypot(x - share * across, y - share * down)
-        k = int(np.argmax(distance))
+        k = int(distance.argmax())
         if distance[k] > UNSEEN:
             kept[a + 1 + k] = True
             stretches += [(a, a + 1 + k), (a + 1 + k, b)]

@@ -4,13 +4,15 @@ from seatrial.core.results.coefficients import (
     CandidateModel, Coefficient, DisturbanceCandidate, Method, Noise, NoiseModel, Offset, OffsetPopulation, Residuals,
     SessionOffset, Waves, fitted_session, offsets_text, session_offsets_of,
 )  # fmt: skip
+from seatrial.core.results.campaign import Benchmark, CampaignSummary
 from seatrial.core.results.comparison import ComparedFit, Comparison, Difference, JointTest, ManoeuvreDifferences
 from seatrial.core.results.design import Actuator, Confirmation, Design, ManoeuvrePrecision, TimedOrder, TrialLimits
-from seatrial.core.results.fields import Summary
+from seatrial.core.results.fields import Summarised, Summary
 from seatrial.core.results.fit import (
     Collinearity, Consequence, CredibleInterval, Direction, Fit, Identifiability, Posterior, Profile, SearchAttempt,
     Sensitivity, Stability, Symmetry,
 )  # fmt: skip
+from seatrial.core.results.online import Snapshot
 from seatrial.core.results.prediction import (
     Baseline, ChannelScore, Divergence, Extrapolation, IntervalBasis, KStepErrors, Measure, OpenLoopScores, Prediction,
     RowScore, WindowBaseline, WindowScore,
@@ -21,12 +23,16 @@ from seatrial.core.results.ship_motions import (
     QuadrantMap, RollCharacteristics, Seakeeping, ThrusterCraft,
 )  # fmt: skip
 from seatrial.core.results.study import Bars, Check, CheckStatus, Claim, Curve, Figure, Matrix, Study, Table, Verdict
+from seatrial.core.results.tuning import Tuning
+from seatrial.core.results.verification import Verification
 from seatrial.numerics.optimise import Solution, Status
 
 __all__ = [
     "Actuator",
     "Bars",
     "Baseline",
+    "Benchmark",
+    "CampaignSummary",
     "CandidateModel",
     "ChannelScore",
     "Check",
@@ -84,17 +90,21 @@ __all__ = [
     "SearchTrack",
     "Sensitivity",
     "SessionOffset",
+    "Snapshot",
     "Solution",
     "Stability",
     "Status",
     "Study",
+    "Summarised",
     "Summary",
     "Symmetry",
     "Table",
     "ThrusterCraft",
     "TimedOrder",
     "TrialLimits",
+    "Tuning",
     "Verdict",
+    "Verification",
     "Waves",
     "WindowBaseline",
     "WindowScore",

@@ -1,12 +1,12 @@
 """A record: one run on one time base, named channels with unit, frame, sign and reference point; at any scale."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from datetime import UTC, datetime
 from enum import StrEnum
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import numpy as np
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 # A record: one run on one time base, named channels with unit, frame, sign and reference point.
 
+T = TypeVar("T")
 
 # dimensionless, ours: how far steps of an even time base may differ, in mean steps; how far a ratio of rates may be
 # from a whole number; rounding of a duration times a rate
@@ -118,6 +119,21 @@ class Record(PickledByConstructor):
                 f"record '{self.name}' has no channel '{symbol}'{channel_hint(symbol, list(self.channels))}"
             )
         return self.channels[symbol]
+
+    @cached_property
+    def _computed(self) -> dict[Callable[["Record"], Any], Any]:
+        """What functions gave of this record."""
+        return {}
+
+    def computed(self, function: Callable[["Record"], T]) -> T:
+        """Return what a function gives of the record, worked out once: neither the record nor that changes.
+
+        Raises:
+            InputError: what the function raises.
+        """
+        if function not in self._computed:
+            self._computed[function] = function(self)
+        return self._computed[function]
 
     @property
     def duration(self) -> float:

@@ -57,8 +57,9 @@ def sample_noise(values: Array) -> float:
     """
     if len(values) <= 3:
         return 0.0
-    rounding = resolution(values) / np.sqrt(12.0)  # a uniform distribution's
-    return max(float(np.sqrt(np.nanmean(np.diff(values, 3) ** 2) / _THIRD_DIFFERENCES)), float(rounding))
+    spread = float(np.sqrt(np.nanmean(np.diff(values, 3) ** 2) / _THIRD_DIFFERENCES))
+    uniform = float(np.sqrt(12.0))  # width over standard deviation of a uniform distribution
+    return max(spread, resolution(values, least=spread * uniform) / uniform)
 
 
 def least_squares(features: Array, target: Array) -> tuple[Array, float]:

@@ -7,15 +7,13 @@ import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
+from seatrial.core import results
 from seatrial.core.equations import Model
-from seatrial.core.results import Comparison, Design, Fit, Study, session_offsets_of
-from seatrial.core.results.online import Snapshot
-from seatrial.core.results.tuning import Tuning
-from seatrial.core.results.verification import Verification
+from seatrial.core.results import Fit, Summarised, session_offsets_of
 from seatrial.core.values import Array, InputError
 from seatrial.core.values.files import is_file, parse_json, read_bounded, read_table_text, write_files_atomically
 from seatrial.data.folder.document import (
@@ -27,16 +25,19 @@ from seatrial.data.folder.document import (
     stored_document,
     strict_json,
 )
-from seatrial.data.folder.gains_file import gains_toml, loop_mat, orders_csv, schedule_csv
 from seatrial.data.folder.model_file import ModelFile, ModelProvenance, RecordSource, model_text, parse_model
 from seatrial.data.read.record_file import record_csv
 from seatrial.data.trial.records import approach_condition
+
+if TYPE_CHECKING:
+    from seatrial.core.results import Comparison, Design, Snapshot, Study, Tuning, Verification
+
+    Result = Fit | Design | Tuning | Study | Comparison | Verification
 
 # bytes of a data file of a folder, at most: half an hour at 10 kHz of eight channels, thrice; chosen
 _LARGEST_COMPANION = 2**32
 MODEL, ARRAYS, REPORT = "model.toml", "arrays.npz", "report.html"
 T = TypeVar("T")
-Result = Fit | Design | Tuning | Study | Comparison | Verification
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class FolderKind(Generic[T]):
     """What a folder holds for one type of result.
 
     Attributes:
-        result: the type.
+        result: gives the type, whose module is imported then.
         document: name of the JSON file.
         command: writes such a folder.
         model: result -> the model file of the folder.
@@ -54,7 +55,7 @@ class FolderKind(Generic[T]):
         repeated: values of `--json` that stand elsewhere in the folder.
     """
 
-    result: type[T]
+    result: Callable[[], type[T]]
     document: str
     command: str
     model: Callable[[T], ModelFile] | None = None
@@ -97,52 +98,57 @@ def _fit_products(fit: Fit) -> dict[str, bytes]:
     return {"posterior.npz": npz_bytes(arrays)}
 
 
-def _design_products(design: Design) -> dict[str, bytes]:
+def _design_products(design: "Design") -> dict[str, bytes]:
+    from seatrial.data.folder.gains_file import orders_csv
+
     return {"orders.csv": orders_csv(design).encode(), "plan.csv": record_csv(design.plan).encode()}
 
 
-def _tuning_products(tuning: Tuning) -> dict[str, bytes]:
+def _tuning_products(tuning: "Tuning") -> dict[str, bytes]:
+    from seatrial.data.folder.gains_file import gains_toml, loop_mat, schedule_csv
+
     schedule = {"schedule.csv": schedule_csv(tuning).encode()} if tuning.schedule else {}
     return {"gains.toml": gains_toml(tuning).encode(), "loop.mat": loop_mat(tuning), **schedule}
 
 
 KINDS: tuple[FolderKind[Any], ...] = (
     FolderKind(
-        Fit, "result.json", "seatrial identify TRIAL --out DIR", model_of_fit, _fields_of_fit,
+        lambda: Fit, "result.json", "seatrial identify TRIAL --out DIR", model_of_fit, _fields_of_fit,
         _fit_products, repeated=frozenset({"validation", "intervals"}),
     ),
     FolderKind(
-        Design, "design.json", "seatrial design TRIAL --out DIR",
+        lambda: results.Design, "design.json", "seatrial design TRIAL --out DIR",
         lambda design: ModelFile(design.model), lambda file: {"model": file.model}, _design_products,
         ("orders.csv", "plan.csv"), frozenset({"equation_hash", "values", "evaluations", "status"}),
     ),
     FolderKind(
-        Tuning, "tuning.json", "seatrial tune LOOP --out DIR", products=_tuning_products,
+        lambda: results.Tuning, "tuning.json", "seatrial tune LOOP --out DIR", products=_tuning_products,
         product_names=("gains.toml", "loop.mat", "schedule.csv"), repeated=frozenset({"evaluations", "status"}),
     ),
-    FolderKind(Study, "study.json", "seatrial reproduce STUDY --out DIR"),
+    FolderKind(lambda: results.Study, "study.json", "seatrial reproduce STUDY --out DIR"),
     FolderKind(
-        Comparison, "comparison.json", "seatrial compare FIRST SECOND --out DIR", repeated=frozenset({"significant"})
+        lambda: results.Comparison, "comparison.json", "seatrial compare FIRST SECOND --out DIR",
+        repeated=frozenset({"significant"}),
     ),
     FolderKind(
-        Verification, "verification.json", "seatrial tune LOOP --verify LOG --out DIR",
+        lambda: results.Verification, "verification.json", "seatrial tune LOOP --verify LOG --out DIR",
         repeated=frozenset({"outside", "moved"}),
     ),
 )  # fmt: skip
 
 
-def replaced_files(result: Result | Snapshot) -> frozenset[str]:
+def replaced_files(result: "Result | Snapshot") -> frozenset[str]:
     """Return the names of files of earlier results, of any kind, that a folder must not keep beside this one."""
-    if isinstance(result, Snapshot):
+    if not isinstance(result, Summarised):
         return frozenset()
     return frozenset({ARRAYS, MODEL, REPORT}).union(*({kind.document, *kind.product_names} for kind in KINDS))
 
 
-def folder_files(result: Result | Snapshot) -> dict[str, bytes]:
+def folder_files(result: "Result | Snapshot") -> dict[str, bytes]:
     """Return name and content of every data file of a result's folder, the document last; a report is none of them."""
-    if isinstance(result, Snapshot):
+    if not isinstance(result, Summarised):
         return {"online.json": strict_json(document(result)).encode()}
-    kind = next(kind for kind in KINDS if isinstance(result, kind.result))
+    kind = next(kind for kind in KINDS if isinstance(result, kind.result()))
     table, arrays = stored_document(result, kind.repeated)
     companions = {ARRAYS: npz_bytes(arrays)} if arrays else {}
     if kind.model is not None:
@@ -152,7 +158,7 @@ def folder_files(result: Result | Snapshot) -> dict[str, bytes]:
     return {**files, kind.document: strict_json(table | {"files": digests}).encode()}
 
 
-def save_result(result: Result | Snapshot, folder: str | Path) -> Path:
+def save_result(result: "Result | Snapshot", folder: str | Path) -> Path:
     """Write the data files of a result, all or none, and return the folder; the files of a result in it are replaced.
 
     Other files in the folder are left alone.
@@ -163,7 +169,7 @@ def save_result(result: Result | Snapshot, folder: str | Path) -> Path:
     return write_files_atomically(Path(folder), folder_files(result), replaced_files(result))
 
 
-def load_result(folder: str | Path, own_model: Model | None = None) -> Result:
+def load_result(folder: str | Path, own_model: Model | None = None) -> "Result":
     """Return the result that a folder holds; nothing is computed.
 
     Args:
@@ -189,7 +195,7 @@ def load_result(folder: str | Path, own_model: Model | None = None) -> Result:
                 f"(CHANGELOG.md says where); run {command}"
             )
         arrays, fields = _companions(kind, folder, table["files"], own_model, command)
-        return read_document(kind.result, table | fields, arrays)
+        return read_document(kind.result(), table | fields, arrays)
     except OSError as error:
         raise InputError(f"'{error.filename}' cannot be read ({error.strerror}); run {command} again") from None
     except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.core.values import Array
-from seatrial.core.values.arrays import sentinel_value
+from seatrial.core.values.arrays import frozen, sentinel_value
 from seatrial.numerics.resolution import resolution
 
 Signal = NDArray[Any]
@@ -62,6 +62,11 @@ class Samples:
         return np.unwrap(cells, period=self.turn) if self.turn else cells
 
     @cached_property
+    def means(self) -> dict["Grid", Array]:
+        """What `Grid.means` found of them, on each grid."""
+        return {}
+
+    @cached_property
     def resolution(self) -> float:
         """The step in which the numbers were written; 0: none shows."""
         return resolution(self.readings[1])
@@ -79,10 +84,15 @@ class Grid:
         return float(self.edges[1] - self.edges[0])
 
     def means(self, samples: Samples) -> Array:
-        """Return the means of the unwrapped readings in the bins, straight lines across empty ones, (n,).
+        """Return the means of the unwrapped readings in the bins, straight lines across empty ones, (n,); read-only.
 
         Bins before the first and after the last reading are NaN.
         """
+        if self not in samples.means:
+            samples.means[self] = frozen(self._means(samples))
+        return samples.means[self]
+
+    def _means(self, samples: Samples) -> Array:
         seconds, cells = samples.readings[0], samples.unwrapped
         centres = 0.5 * (self.edges[1:] + self.edges[:-1])
         place = np.searchsorted(self.edges, seconds, side="right") - 1

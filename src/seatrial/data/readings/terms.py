@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -48,10 +49,10 @@ def independent_numbers(values: Signal, beside: Signal | None = None) -> float:
 
     beside: the other signal; None: the signal itself.
     """
-    power = np.abs(np.fft.rfft(values - np.mean(values))) ** 2
-    other = power if beside is None else np.abs(np.fft.rfft(beside - np.mean(beside))) ** 2
-    total = float(np.sum(power * other))
-    return min(2.0 * float(np.sum(power)) * float(np.sum(other)) / total, _MOST_NUMBERS) if total > 0.0 else 0.0
+    power = np.abs(np.fft.rfft(values - values.mean())) ** 2
+    other = power if beside is None else np.abs(np.fft.rfft(beside - beside.mean())) ** 2
+    total = float((power * other).sum())
+    return min(2.0 * float(power.sum()) * float(other.sum()) / total, _MOST_NUMBERS) if total > 0.0 else 0.0
 
 
 def softly(nats: float, cap: float = _CAP) -> float:
@@ -221,16 +222,40 @@ class Relations:
         for k, step in enumerate(self.steps):
             delta = slots["delta"][k]
             delta = delta - delta[np.isfinite(delta)][:1].sum()  # a rudder that stays is exactly zero
-            rate = slots["r"][k] if "r" in slots else np.gradient(slots["psi"][k], step)
-            for lag in (*_LAGS, 3 * _LAGS[-1]):
-                mean_rate, mean_delta = _integral(rate, lag) / lag, _integral(delta, lag) / lag
-                signed.append(_signed_nats(_rates(rate, lag), mean_delta, mean_rate, lag))
-                signed.append(_signed_nats(rate[lag:], delta[:-lag], None, lag))
-                # a turn that falls again under the same rudder follows it by its changes alone
-                signed.append(_signed_nats(_rates(rate, lag), mean_delta - delta[:-lag], None, lag))
+            signed += self._answers(slots["r"][k] if "r" in slots else np.gradient(slots["psi"][k], step), delta)
         for_it, against = max(signed), -min(signed)
         nats = for_it - 0.5 * against if for_it >= against else -(against - 0.5 * for_it)
         return math.copysign(min(abs(nats), _TURNING_CAP), nats)
+
+    def _answers(self, rate: Signal, delta: Signal) -> list[float]:
+        """Signed nats for a yaw rate answering a rudder; of readings to the other side they have the other sign."""
+        sides = _side(rate), _side(delta)
+        rate, delta = (side * values + 0.0 for side, values in zip(sides, (rate, delta), strict=True))  # -0 + 0 is 0
+        if (key := (rate.tobytes(), delta.tobytes())) not in self._known_answers:
+            self._known_answers[key] = _answers(rate, delta)
+        return [sides[0] * sides[1] * nats for nats in self._known_answers[key]]
+
+    @cached_property
+    def _known_answers(self) -> dict[tuple[bytes, bytes], list[float]]:
+        """Yaw rate and rudder as bytes -> the nats of their answers."""
+        return {}
+
+
+def _side(values: Signal) -> float:
+    """The sign of the first value that has one."""
+    signs = np.sign(values[np.isfinite(values)])
+    return float(signs[np.argmax(signs != 0.0)]) or 1.0 if signs.size else 1.0
+
+
+def _answers(rate: Signal, delta: Signal) -> list[float]:
+    signed = list[float]()
+    for lag in (*_LAGS, 3 * _LAGS[-1]):
+        mean_rate, mean_delta = _integral(rate, lag) / lag, _integral(delta, lag) / lag
+        signed.append(_signed_nats(_rates(rate, lag), mean_delta, mean_rate, lag))
+        signed.append(_signed_nats(rate[lag:], delta[:-lag], None, lag))
+        # a turn that falls again under the same rudder follows it by its changes alone
+        signed.append(_signed_nats(_rates(rate, lag), mean_delta - delta[:-lag], None, lag))
+    return signed
 
 
 def _midway(axes: Signal, lag: int) -> Signal:

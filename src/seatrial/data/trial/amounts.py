@@ -31,7 +31,7 @@ STRICT_FIELDS = ConfigDict(extra="forbid", allow_inf_nan=False)
 class StrictTable(BaseModel):
     """A table of a file: no unknown keys, immutable."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, defer_build=True)
 
 
 def _valid_unit(unit: object) -> object:

@@ -5,14 +5,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from enum import StrEnum
 from functools import cached_property
-from typing import Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from pydantic import Field, GetCoreSchemaHandler, model_validator
 from pydantic.dataclasses import dataclass
 from pydantic_core.core_schema import CoreSchema, no_info_after_validator_function
 
 from seatrial.core.equations import Model
-from seatrial.core.results import Actuator, TrialLimits
 from seatrial.core.values import NOTATION, InputError, si_unit, spelling_hint
 from seatrial.data.trial.amounts import (
     STRICT_FIELDS,
@@ -26,6 +25,9 @@ from seatrial.data.trial.amounts import (
     raises_input_error,
 )
 from seatrial.data.trial.settings import Positive
+
+if TYPE_CHECKING:
+    from seatrial.core.results import Actuator, TrialLimits
 
 _HALF_TURN = math.pi
 """No angle of a rudder or of drift reaches half a turn [rad]: degrees without their unit do."""
@@ -66,8 +68,10 @@ class InputRange:
             )
         return self
 
-    def actuator(self, name: str) -> Actuator:
+    def actuator(self, name: str) -> "Actuator":
         """Return the input of that name with its range and rate in SI units."""
+        from seatrial.core.results import Actuator
+
         factor = si_unit(self.unit)[0]
         rate = math.inf if self.rate is None else self.rate * factor
         return Actuator(name, self.lower * factor, self.upper * factor, rate, self.hold)
@@ -118,7 +122,7 @@ class DesignRequest:
     every_ship: bool = True
 
     @cached_property
-    def actuators(self) -> tuple[Actuator, ...]:
+    def actuators(self) -> "tuple[Actuator, ...]":
         """The inputs that may be moved, SI."""
         return tuple(input_range.actuator(name) for name, input_range in self.inputs.items())
 
@@ -129,8 +133,10 @@ class DesignRequest:
         )
 
     @property
-    def limits(self) -> TrialLimits:
+    def limits(self) -> "TrialLimits":
         """What the trial may not leave, SI."""
+        from seatrial.core.results import TrialLimits
+
         drift, room = (math.inf if limit is None else limit for limit in (self.drift, self.sea_room))
         return TrialLimits(drift, room, self.every_ship)
 

@@ -5,9 +5,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-import tomlkit
 from pydantic import ValidationError
-from tomlkit.exceptions import TOMLKitError
 
 from seatrial.core.equations import Model
 from seatrial.core.values import (
@@ -49,7 +47,6 @@ from seatrial.data.trial.runs import (
 from seatrial.data.trial.schema import NO_CHANNELS, RecordsTable, TrialFile
 from seatrial.data.trial.trial import Role, Run, Trial
 from seatrial.physics.sensors.settings import TIMED_CHANNELS
-from seatrial.physics.simulate.states import rest_parameter
 
 # A trial file into a `Trial`.
 
@@ -161,7 +158,7 @@ def trial_of_tables(
         symbols = {*NOTATION, *declared}
         _refuse_unknown_names("noise", list(file.noise), symbols)
         _refuse_unknown_names("estimate.channels", list(file.estimate.channels), set(model.observables))
-        resting = {state for state in model.states if rest_parameter(model, state)}
+        resting = {state for state in model.states if model.rest_parameter(state)}
         for key, names, correctable in (
             ("offsets", file.estimate.offsets, resting),
             ("gains", file.estimate.gains, set()),
@@ -377,6 +374,9 @@ def edited_text(text: str, path: Path, index: int, edits: tuple[TrialEdit, ...])
     Raises:
         InputError: the block has no such key.
     """
+    import tomlkit
+    from tomlkit.exceptions import TOMLKitError
+
     block = _tables(text, path).records[index]
     try:
         document = tomlkit.parse(text)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from seatrial.core.equations import Model
+from seatrial.core.equations.model import ZERO_BY_DEFAULT
 from seatrial.core.values import (
     Finding,
     InputError,
@@ -23,7 +24,6 @@ from seatrial.physics.hydro.empirical import HullForm, added_mass
 from seatrial.physics.models import MODELS, model_named
 from seatrial.physics.models.published import kvlcc2_l7, parameter_set, with_start_values
 from seatrial.physics.sensors import Sensors, with_sensors
-from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT
 
 # What a model needs, what is filled from where, and the tables of a trial file to begin with.
 

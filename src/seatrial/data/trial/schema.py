@@ -129,7 +129,7 @@ class ShipTable(BaseModel):
         scale: of a model; 45.7 for 1:45.7.
     """
 
-    model_config = ConfigDict(extra="allow", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="allow", frozen=True, allow_inf_nan=False, defer_build=True)
 
     name: str
     source: str = ""

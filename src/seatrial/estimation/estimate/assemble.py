@@ -18,7 +18,6 @@ from seatrial.estimation.problem.output_error import DataTerm, Nuisance, OutputE
 from seatrial.estimation.problem.segments import compared_outputs, cut_segments
 from seatrial.estimation.problem.static_forces import StaticForces
 from seatrial.physics.simulate.batch import InputCorrection
-from seatrial.physics.simulate.states import rest_parameter
 
 # The runs that one estimate is made from, and what else is measured of the ship.
 
@@ -209,7 +208,7 @@ def _zero_deviation(name: str, deviation: float | None) -> tuple[str, float]:
 
 def _nuisances(model: Model, settings: EstimateSettings) -> Iterator[Nuisance]:
     for name, deviation in settings.offsets.items():
-        if rest_parameter(model, name):
+        if model.rest_parameter(name):
             continue
         unit, spread = _zero_deviation(name, deviation)
         covariate = settings.covariates.get(name, "")
@@ -233,7 +232,7 @@ def _session_parameters(model: Model, settings: EstimateSettings) -> Iterator[tu
         prior = Prior(0.0, settings.current, _SOURCE)
         yield from (("current_north", prior), ("current_east", prior))
     for state, deviation in settings.offsets.items():
-        if name := rest_parameter(model, state):
+        if name := model.rest_parameter(state):
             yield name, Prior(model.parameters[name].value, _zero_deviation(state, deviation)[1], _SOURCE)
 
 

@@ -115,7 +115,7 @@ def _solved(problem: WeakForm, point: Array, rounds: int) -> tuple[Array, float]
         return np.maximum(np.sqrt(np.mean(problem.linearised(values)[0] ** 2, axis=0)), floor)
 
     for _ in range(rounds):
-        problem = replace(problem, residual_sd=np.where(is_varying, spread(point), np.inf))
+        problem = problem.weighted(np.where(is_varying, spread(point), np.inf))
         # of the weak form, at most; chosen
         point = levenberg_marquardt(problem, point, np.zeros((0, 0)), evaluations=30).solution.point
     return point, float(np.sum(np.log(spread(point)[is_varying])))

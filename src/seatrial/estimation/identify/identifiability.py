@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from seatrial.core.equations import Model
 from seatrial.core.results import Consequence, Identifiability, Sensitivity, Stability, Symmetry
@@ -151,6 +150,8 @@ def _over_speeds(
     model: Model, approach: Mapping[str, float], slow: Stability | None, fast: Stability | None
 ) -> Stability | None:
     """The stability at the faster of two speeds where the craft is unstable there, else at the slower."""
+    from scipy.optimize import brentq
+
     if slow is None or fast is None or slow.speed == fast.speed:
         return slow
     assert slow.speed is not None and slow.growth_rate is not None

@@ -6,11 +6,10 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from seatrial.core.results import Fit
-from seatrial.core.results.fields import MissingParts
 from seatrial.core.text.words import enumeration
-from seatrial.core.values import Array, Finding, InputError, ProgressReporter, Record
+from seatrial.core.values import Finding, InputError, ProgressReporter
 from seatrial.data.check.phases import begins_before_release
-from seatrial.data.trial import EstimateMethod, FitCriterion, OwnEstimate, Role, Trial, checked_records
+from seatrial.data.trial import EstimateMethod, FitCriterion, Role, Trial, checked_records
 from seatrial.data.trial.records import require_decay
 from seatrial.data.trial.settings import window_lengths
 from seatrial.estimation.estimate import EstimatorOptions, IntervalMethod
@@ -20,7 +19,6 @@ from seatrial.estimation.estimate.plausibility import OutsidePhysicsError
 from seatrial.estimation.estimate.point_estimate import force_consistency
 from seatrial.estimation.estimate.settings import weak_form_half_width
 from seatrial.estimation.identify.assembled_fit import assembled_fit
-from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines, with_term_selection
 from seatrial.estimation.identify.identification import (
     Identification,
     Situation,
@@ -32,20 +30,6 @@ from seatrial.estimation.identify.identification import (
     with_timed_readings,
 )
 from seatrial.estimation.identify.model_selection import selected_model
-from seatrial.estimation.identify.search import (
-    PublishedEstimate,
-    check_search_settings,
-    estimate_by_regression,
-    estimate_by_search,
-    own_estimate_progress,
-    published_alone,
-    published_fit,
-    record_rms,
-    recorded_starts,
-    refuse_options,
-    simulated_starts,
-    training_predictions,
-)
 from seatrial.estimation.identify.step_times import with_step_times
 from seatrial.estimation.identify.warnings import single_order_findings, with_unexcited_thrust_held
 from seatrial.estimation.identify.waves import contradicted_waves, identify_by_wave_spectrum, identify_in_unknown_waves
@@ -176,13 +160,17 @@ def identify(
     """
     began = time.perf_counter()
     method = trial.estimate.method
-    check_search_settings(trial)
-    refuse_options(method, choose=choose, compare=compare)
+    own_progress = report_progress
+    if method.is_published or trial.estimate.search is not None:
+        from seatrial.estimation.identify.search import check_search_settings, own_estimate_progress, refuse_options
+
+        check_search_settings(trial)
+        refuse_options(method, choose=choose, compare=compare)
+        own_progress = own_estimate_progress(report_progress)
     checked = checked_records(trial)
     window_lengths(windows)  # what is misspelt is refused before the fit
     horizon_list(horizons)
     options = EstimatorOptions(intervals, seed, windows=windows or trial.estimate.windows, horizons=horizons)
-    own_progress = own_estimate_progress(report_progress) if method.is_published else report_progress
     train = [r.record for r in checked.records if r.role is Role.TRAIN]
     model, held = with_unexcited_thrust_held(trial.model, train)
     held = (*held, *single_order_findings(model, train))
@@ -191,7 +179,9 @@ def identify(
     situation = identification_situation(task)
     _refuse_sampling(intervals, situation, method)
     if method.is_published:
-        return _published(task, situation, report_progress)
+        from seatrial.estimation.identify.search import identify_by_published_method
+
+        return identify_by_published_method(task, situation, STRATEGIES[situation], report_progress)
     errors: tuple[Finding, ...] = ()
     if situation is Situation.STEERED:
         task, errors = _with_inputs_and_instruments(task)
@@ -199,6 +189,8 @@ def identify(
     fit = replace(fit, method=replace(fit.method, name=method.value), findings=(*errors, *fit.findings))
     if not compare or situation is Situation.UNKNOWN_WAVES:  # no input, so that there is nothing to regress on
         return fit
+    from seatrial.estimation.identify.baselines import with_baselines, with_search_baselines, with_term_selection
+
     window = weak_form_half_width(task.trial.model, task.runs.records, task.resolved_time)
     fit = with_baselines(fit, task.runs.records, window, report_progress, trial.compare.svr)
     if trial.model.is_affine and situation is Situation.RECORDED_WAVES:
@@ -231,75 +223,6 @@ def _refuse_sampling(intervals: IntervalMethod, situation: Situation, method: Es
     if situation in (Situation.WAVE_SPECTRUM, Situation.UNKNOWN_WAVES):
         raise InputError("--intervals sampling needs what moves the ship in every sample, and here the waves were not "
                          "recorded; leave the choice of intervals to the program")  # fmt: skip
-
-
-def _published(task: Identification, situation: Situation, report_progress: ProgressReporter | None) -> Fit:
-    """The fit of the published method that the trial names, compared with the package's own.
-
-    Raises:
-        InputError: the runs cannot be simulated from recorded inputs, or what the method raises.
-    """
-    trial, method = task.trial, task.trial.estimate.method
-    if situation in (Situation.WAVE_SPECTRUM, Situation.UNKNOWN_WAVES):
-        raise InputError(
-            f"method '{method}' needs what moves the ship in every sample, and here the waves were not recorded; "
-            'record them, or write method = "auto"'
-        )
-    order = trial.estimate.own_estimate
-    if order is OwnEstimate.FIRST:
-        reference, cpu_s = _own_estimate(task, situation)
-        estimate = _published_estimate(task, reference, report_progress)
-        fit = published_fit(reference, _beside(task, estimate, reference), cpu_s, task.findings)
-        return replace(fit, elapsed_s=time.perf_counter() - task.began)
-    estimate = _published_estimate(task, None, report_progress)
-    if order is OwnEstimate.NONE:
-        return published_alone(task, estimate)
-    if report_progress:
-        found = zip(trial.model.parameters.free_names, estimate.solution.point, strict=True)
-        report_progress(f"{method}: {', '.join(f'{name} {value:.4g}' for name, value in found)}")
-    parts = MissingParts()
-    own = parts.computed("the package's own estimate", lambda: _own_estimate(task, situation), None)
-    if own is None:
-        alone = published_alone(task, estimate)
-        return replace(alone, findings=(*alone.findings, *parts.findings))
-    reference, cpu_s = own
-    fit = published_fit(reference, _beside(task, estimate, reference), cpu_s, task.findings)
-    return replace(fit, elapsed_s=time.perf_counter() - task.began)
-
-
-def _own_estimate(task: Identification, situation: Situation) -> tuple[Fit, float]:
-    """The package's own fit, and the processor time of its estimate [s]."""
-    began = time.process_time()
-    _ = task.estimation
-    cpu_s = time.process_time() - began
-    return STRATEGIES[situation](task), cpu_s
-
-
-def _starts(task: Identification, reference: Fit | None) -> tuple[list[Record], list[Array]]:
-    """The training runs, and the state in which each begins: of the package's own fit, else of its record."""
-    if reference is not None:
-        runs = training_predictions(reference)
-        return [run.measured for run in runs], simulated_starts(reference.model, runs)
-    records = [r.record for r in task.train]
-    return records, recorded_starts(task.trial.model, records)
-
-
-def _published_estimate(
-    task: Identification, reference: Fit | None, report_progress: ProgressReporter | None
-) -> PublishedEstimate:
-    """What the method that the trial names gives."""
-    trial, method = task.trial, task.trial.estimate.method
-    if method.is_search:
-        return estimate_by_search(trial, *_starts(task, reference), task.options.seed, report_progress)
-    window = weak_form_half_width(task.trial.model, task.runs.records, task.resolved_time)
-    return estimate_by_regression(trial.model, task.runs.records, method, window, trial.compare.svr)
-
-
-def _beside(task: Identification, estimate: PublishedEstimate, reference: Fit) -> PublishedEstimate:
-    """With the weighted rms of the package's own values, as a search judges it."""
-    if estimate.search is None:
-        return estimate
-    return replace(estimate, own_record_rms=record_rms(task.trial, reference.model, *_starts(task, reference)))
 
 
 def identification_situation(task: Identification) -> Situation:

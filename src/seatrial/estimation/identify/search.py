@@ -19,6 +19,7 @@ from seatrial.core.results import (
     Solution,
     Status,
 )
+from seatrial.core.results.fields import MissingParts
 from seatrial.core.text.numbers import significant
 from seatrial.core.values import (
     Array,
@@ -31,10 +32,11 @@ from seatrial.core.values import (
     spelling_hint,
 )
 from seatrial.core.values.versions import versions
-from seatrial.data.trial import EstimateMethod, Role, SearchFitness, SearchSettings, Trial
+from seatrial.data.trial import EstimateMethod, OwnEstimate, Role, SearchFitness, SearchSettings, Trial
 from seatrial.data.trial.settings import SupportVectorSettings
+from seatrial.estimation.estimate.settings import weak_form_half_width
 from seatrial.estimation.identify.fit_result import coefficient_table
-from seatrial.estimation.identify.identification import Identification
+from seatrial.estimation.identify.identification import Identification, Situation
 from seatrial.estimation.information.covariance import Interval
 from seatrial.estimation.predict.open_loop import compare_measures, is_steered, rms_errors
 from seatrial.estimation.problem.segments import compared_outputs
@@ -386,6 +388,83 @@ def refuse_options(method: EstimateMethod, *, choose: bool, compare: bool) -> No
             f"{option} goes with the package's own estimate, and method '{method}' is compared with that one anyway; "
             f"leave out {option}, or the method"
         )
+
+
+# The fit of the published method that a trial names, beside the package's own.
+
+
+def identify_by_published_method(
+    task: Identification,
+    situation: Situation,
+    strategy: Callable[[Identification], Fit],
+    report_progress: ProgressReporter | None,
+) -> Fit:
+    """Return the fit of the published method that the trial names, compared with the package's own, by its strategy.
+
+    Raises:
+        InputError: the runs cannot be simulated from recorded inputs, or what the method raises.
+    """
+    trial, method = task.trial, task.trial.estimate.method
+    if situation in (Situation.WAVE_SPECTRUM, Situation.UNKNOWN_WAVES):
+        raise InputError(
+            f"method '{method}' needs what moves the ship in every sample, and here the waves were not recorded; "
+            'record them, or write method = "auto"'
+        )
+    order = trial.estimate.own_estimate
+    if order is OwnEstimate.FIRST:
+        reference, cpu_s = _own_estimate(task, strategy)
+        estimate = _published_estimate(task, reference, report_progress)
+        fit = published_fit(reference, _beside(task, estimate, reference), cpu_s, task.findings)
+        return replace(fit, elapsed_s=time.perf_counter() - task.began)
+    estimate = _published_estimate(task, None, report_progress)
+    if order is OwnEstimate.NONE:
+        return published_alone(task, estimate)
+    if report_progress:
+        found = zip(trial.model.parameters.free_names, estimate.solution.point, strict=True)
+        report_progress(f"{method}: {', '.join(f'{name} {value:.4g}' for name, value in found)}")
+    parts = MissingParts()
+    own = parts.computed("the package's own estimate", lambda: _own_estimate(task, strategy), None)
+    if own is None:
+        alone = published_alone(task, estimate)
+        return replace(alone, findings=(*alone.findings, *parts.findings))
+    reference, cpu_s = own
+    fit = published_fit(reference, _beside(task, estimate, reference), cpu_s, task.findings)
+    return replace(fit, elapsed_s=time.perf_counter() - task.began)
+
+
+def _own_estimate(task: Identification, strategy: Callable[[Identification], Fit]) -> tuple[Fit, float]:
+    """The package's own fit, and the processor time of its estimate [s]."""
+    began = time.process_time()
+    _ = task.estimation
+    cpu_s = time.process_time() - began
+    return strategy(task), cpu_s
+
+
+def _starts(task: Identification, reference: Fit | None) -> tuple[list[Record], list[Array]]:
+    """The training runs, and the state in which each begins: of the package's own fit, else of its record."""
+    if reference is not None:
+        runs = training_predictions(reference)
+        return [run.measured for run in runs], simulated_starts(reference.model, runs)
+    records = [r.record for r in task.train]
+    return records, recorded_starts(task.trial.model, records)
+
+
+def _published_estimate(
+    task: Identification, reference: Fit | None, report_progress: ProgressReporter | None
+) -> PublishedEstimate:
+    """What the method that the trial names gives."""
+    trial, method = task.trial, task.trial.estimate.method
+    if method.is_search:
+        return estimate_by_search(trial, *_starts(task, reference), task.options.seed, report_progress)
+    window = weak_form_half_width(task.trial.model, task.runs.records, task.resolved_time)
+    return estimate_by_regression(trial.model, task.runs.records, method, window, trial.compare.svr)
+
+
+def _beside(task: Identification, estimate: PublishedEstimate, reference: Fit) -> PublishedEstimate:
+    """With the weighted rms of the package's own values, as a search judges it."""
+    if estimate.search is None:
+        return estimate
+    return replace(estimate, own_record_rms=record_rms(task.trial, reference.model, *_starts(task, reference)))
 
 
 # Coefficients by a published search of a population, restarted, on the whole record or sample by sample.

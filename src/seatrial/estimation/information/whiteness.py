@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
 from scipy.special import chdtrc, stdtrit
@@ -17,12 +18,13 @@ def autocorrelation(residuals: Sequence[Array], lags: int) -> Array:
     Box, Jenkins & Reinsel 2008, eq. (2.1.12), with the mean left in: a residual's mean is part of its colour.
     """
     total = np.zeros(lags + 1)
-    for piece in residuals:
-        e = np.where(np.isfinite(piece), piece, 0.0)
-        size = 2 ** int(np.ceil(np.log2(len(e) + lags + 1)))
-        spectrum = np.fft.rfft(e, size)
-        product = np.fft.irfft(np.abs(spectrum) ** 2, size)[: lags + 1]
-        total[: min(lags, len(e) - 1) + 1] += product[: min(lags, len(e) - 1) + 1]
+    for length, alike in groupby(residuals, len):  # one call for all series of one length
+        pieces = np.stack(list(alike))
+        size = 2 ** int(np.ceil(np.log2(length + lags + 1)))
+        spectra = np.fft.rfft(np.where(np.isfinite(pieces), pieces, 0.0), size)
+        products = np.fft.irfft(np.abs(spectra) ** 2, size)
+        kept = min(lags, length - 1) + 1
+        total[:kept] = np.sum(np.concatenate([total[None, :kept], products[:, :kept]]), axis=0)
     return total / total[0] if total[0] > 0 else np.eye(1, lags + 1)[0]
 
 

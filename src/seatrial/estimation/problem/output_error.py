@@ -1,6 +1,6 @@
 """Output error over segments: simulate each from its own free initial state and compare with what was measured."""
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
@@ -10,7 +10,12 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, Prior
 from seatrial.estimation.problem.population import SessionPopulation
-from seatrial.estimation.problem.segments import Segments, initial_state_weights, measured_initial_states
+from seatrial.estimation.problem.segments import (
+    KnownSlopes,
+    Segments,
+    initial_state_weights,
+    measured_initial_states,
+)
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
@@ -19,6 +24,7 @@ from seatrial.physics.simulate.states import ActuatorHistory
 
 # Output error over segments: simulate each from its own free initial state and compare with what was measured.
 
+_MOST_KEPT = 2**23  # slopes that are kept for the next evaluation at their point, 64 MB; chosen
 _ROWS_PER_RANGE = 4000  # samples that one thread takes at a time; chosen
 
 _BY_CHANCE = 3.84  # squared standard deviations between a right prior and its record in 19 of 20 cases
@@ -259,7 +265,34 @@ class OutputError:
     def _differentiate(
         self, bounds: tuple[int, int], start: Array, values: Array, corrections: Array, by_actuator: Array | None
     ) -> tuple[Array, Array]:
-        """Outputs of some segments and their derivatives by a session's columns, then by unknown initial states."""
+        """Outputs of some segments and their derivatives by a session's columns, then by unknown initial states.
+
+        Noise and priors move neither: at one point of the same data they are worked out once.
+        """
+        if self.data.measured.size * (self.size + len(self.starts)) > _MOST_KEPT:
+            return self._differentiated(bounds, start, values, corrections, by_actuator)
+        point, last = (self._simulated_by, *(a.tobytes() for a in (start, values, corrections))), self.data.last_slopes
+        known = next((one for one in last if one.point == point), None) or KnownSlopes(point, {})
+        last[:] = [known]
+        if bounds not in known.found:
+            found = self._differentiated(bounds, start, values, corrections, by_actuator)
+            for array in found:
+                array.setflags(write=False)
+            known.found[bounds] = found
+        return known.found[bounds]
+
+    @cached_property
+    def _simulated_by(self) -> tuple[Hashable, ...]:
+        """What decides the slopes besides the data and the point."""
+        equations = self.model.equations
+        return (
+            equations.digest, equations.layout, equations.sensors, self.model.held, self.observables, self.free,
+            self.session_parameters, tuple(n.correction for n in self.nuisances), self.substeps, self.starts,
+        )  # fmt: skip
+
+    def _differentiated(
+        self, bounds: tuple[int, int], start: Array, values: Array, corrections: Array, by_actuator: Array | None
+    ) -> tuple[Array, Array]:
         y, s, _ = self._batch.differentiate(*bounds, start, values, corrections)
         if by_actuator is None:
             return y, s
@@ -278,6 +311,11 @@ class OutputError:
                 edges.append((first, s))
                 first = s
         return edges
+
+    @property
+    def _threads(self) -> int | None:
+        """The threads of one evaluation: that of the caller where two would not both have their fill."""
+        return self.workers if len(self.data.measured) >= 2 * _ROWS_PER_RANGE else 1
 
     def _scaled_residuals(self, simulated: Array, rows: slice) -> Array:
         residual = (simulated - self.data.measured[rows]) / self.noise
@@ -347,7 +385,7 @@ class OutputError:
         """Return simulated outputs of all segments, shape (rows, ny); NaN after a divergence."""
         start, values, corrections = self.unpack(shared, local)
         pieces = map_in_threads(lambda p: self._batch.simulate(*p, start, values, corrections)[0], self._work_ranges(),
-                        workers=self.workers)  # fmt: skip
+                        workers=self._threads)  # fmt: skip
         return np.concatenate(pieces)
 
     def cost(self, shared: Array, local: Array) -> float:
@@ -394,7 +432,7 @@ class OutputError:
                 hessians.append(jacobian.T @ jacobian)
             return np.array(costs), np.array(gradients), np.array(hessians)
 
-        parts = map_in_threads(piece, self._work_ranges(), workers=self.workers)
+        parts = map_in_threads(piece, self._work_ranges(), workers=self._threads)
         costs, gradients, hessians = (np.concatenate([p[i] for p in parts]) for i in range(3))
         mean, weight = self.initial_prior
         costs += 0.5 * np.sum(weight * (local - mean) ** 2, axis=1)
@@ -409,7 +447,7 @@ class OutputError:
         parts = map_in_threads(
             lambda p: self._differentiate(p, start, values, corrections, by_actuator)[1],
             self._work_ranges(),
-            workers=self.workers,
+            workers=self._threads,
         )
         return np.concatenate(parts)
 
@@ -424,7 +462,7 @@ class OutputError:
             rows = slice(self.data.offsets[bounds[0]], self.data.offsets[bounds[1]])
             return np.einsum("tyf,ty->yf", s[:, :, : len(self.free)] ** 2, known[rows].astype(float))
 
-        total = np.sum(map_in_threads(piece, self._work_ranges(), workers=self.workers), axis=0)
+        total = np.sum(map_in_threads(piece, self._work_ranges(), workers=self._threads), axis=0)
         return np.sqrt(total / np.maximum(known.sum(axis=0), 1)[:, None]) / self.noise[:, None]
 
     def normal(self, shared: Array, local: Array) -> NormalEquations:

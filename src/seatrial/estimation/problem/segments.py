@@ -1,7 +1,7 @@
 """Records cut into segments, the data of a problem as arrays, and the states with which segments begin."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from itertools import pairwise
@@ -212,6 +212,14 @@ def start_velocity(north: Array, east: Array, psi: Array, dt: float) -> tuple[fl
 
 
 @dataclass(frozen=True, eq=False)
+class KnownSlopes:
+    """What is known of a point: whatever decides it, and outputs with their derivatives by segments, first to last."""
+
+    point: tuple[Hashable, ...]
+    found: dict[tuple[int, int], tuple[Array, Array]]
+
+
+@dataclass(frozen=True, eq=False)
 class Segments:
     """Segments laid end to end.
 
@@ -236,6 +244,11 @@ class Segments:
     history: ActuatorHistory | None = None
     beginnings: Beginnings | None = None
     run_inputs: RunInputs | None = None
+
+    @cached_property
+    def last_slopes(self) -> "list[KnownSlopes]":
+        """The slopes at the point at which they were last differentiated; empty before."""
+        return []
 
     @cached_property
     def rounding_noise(self) -> Array:

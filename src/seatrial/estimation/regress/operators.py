@@ -1,7 +1,7 @@
 """What stands for the derivative in a regression: differences, a smoothed slope, the weak form."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Protocol, Self
@@ -164,6 +164,7 @@ class WeakForm:
         states, inputs: one array a run, (rows, nx) and (rows, nu), model's signs.
         half_width: of the windows, s.
         residual_sd: standard deviation of each rate's windowed residual, shape (nx,).
+        known: the point that was linearised last, as bytes -> what was found; it does not depend on `residual_sd`.
     """
 
     model: Model
@@ -172,6 +173,13 @@ class WeakForm:
     dt: float
     half_width: float
     residual_sd: Array
+    known: dict[bytes, tuple[Array, Array]] = field(default_factory=dict, init=False)
+
+    def weighted(self, residual_sd: Array) -> "WeakForm":
+        """Return it with other standard deviations of the residuals."""
+        made = replace(self, residual_sd=residual_sd)
+        made.known.update(self.known)
+        return made
 
     @property
     def _free(self) -> Sequence[int]:
@@ -199,7 +207,14 @@ class WeakForm:
         return [np.where(is_held, 0.5 * (u + b), u) for u, b in zip(self.inputs, before, strict=True)]
 
     def linearised(self, point: Array) -> tuple[Array, Array]:
-        """Windowed residuals (windows, nx) and their derivatives (windows, nx, free)."""
+        """Windowed residuals (windows, nx) and their derivatives (windows, nx, free), worked out once at a point."""
+        if (key := point.tobytes()) not in self.known:
+            found = self._linearised(point)
+            self.known.clear()
+            self.known[key] = found
+        return self.known[key]
+
+    def _linearised(self, point: Array) -> tuple[Array, Array]:
         values = self.model.parameters.with_free_values(point).values
         nx, nu = len(self.model.states), len(self.model.inputs)
         residuals, jacobians = [], []

@@ -10,7 +10,7 @@ from numba import njit
 from seatrial.control.ship import plant_and_disturbance, trim_ship
 from seatrial.control.task import TrimmedShip
 from seatrial.core.equations import Model
-from seatrial.core.equations.model import RUDDER
+from seatrial.core.equations.model import RUDDER, ZERO_BY_DEFAULT
 from seatrial.core.values import Array, InputError
 from seatrial.data.folder.model_file import ModelFile
 from seatrial.numerics.kernels.feedback import clamp, steer
@@ -18,7 +18,7 @@ from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE, OPTIONS, kernel
 from seatrial.physics.loops import Block
 from seatrial.physics.models.thrust_orders import AHEAD, YAW, with_orders, work_shares
 from seatrial.physics.models.thruster_layout import ThrusterLayout, layout_of
-from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT, trajectory
+from seatrial.physics.simulate.replay import trajectory
 from seatrial.physics.simulate.thrust import DEFAULT_AHEAD
 
 # A craft as ArduPilot steers it: shares of full steering and throttle in, heading, yaw rate and speed out.

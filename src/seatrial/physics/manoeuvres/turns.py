@@ -108,15 +108,22 @@ def means_of(values: Array, stride: int) -> Array:
 
 def _steady(psi: Array, window: int, band: float) -> list[tuple[int, int]]:
     """First place and place after the last where the heading stays within a band for a window."""
-    from scipy.ndimage import maximum_filter1d, minimum_filter1d
-
     if window >= len(psi):
         return []
     half = window // 2
-    is_inside: Mask = maximum_filter1d(psi, 2 * half + 1) - minimum_filter1d(psi, 2 * half + 1) < band
-    is_inside[:half] = is_inside[len(psi) - half :] = False  # windows that reach beyond the record
-    is_steady = maximum_filter1d(is_inside.astype(np.uint8), 2 * half + 1) > 0
-    return mask_intervals(is_steady)
+    width = 2 * half + 1
+    is_inside: Mask = _over_windows(np.maximum, psi, width) - _over_windows(np.minimum, psi, width) < band
+    # a place is steady where any window about it is; none reaches beyond the record
+    return mask_intervals(_over_windows(np.logical_or, np.pad(is_inside, 2 * half), width))
+
+
+def _over_windows(extreme: np.ufunc, values: Array | Mask, width: int) -> Array | Mask:
+    """Return the extreme of each `width` neighbouring values, (n - width + 1,), by windows of which each is doubled."""
+    length, doubled = 1, values
+    while 2 * length <= width:
+        doubled = extreme(doubled[:-length], doubled[length:])
+        length *= 2
+    return extreme(doubled[: len(values) - width + 1], doubled[width - length :])
 
 
 def reversals(psi: Array, smallest: float) -> list[int]:

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 from seatrial.core.equations import Input, Model
-from seatrial.core.equations.model import MEASURED
+from seatrial.core.equations.model import MEASURED, ZERO_BY_DEFAULT
 from seatrial.core.values import (
     NOTATION,
     Array,
@@ -21,17 +21,10 @@ from seatrial.core.values import (
     spelling_hint,
 )
 from seatrial.core.values.arrays import Between
-from seatrial.core.values.notation import OPPOSITE, TWIN_DIFFERENCES
-from seatrial.numerics.kernels.feedback import steer
+from seatrial.core.values.notation import OPPOSITE
 from seatrial.physics.manoeuvres.recognition import TRUE
-from seatrial.physics.simulate.batch import error_over_range, sufficient_substeps
-from seatrial.physics.simulate.linear import batch_class
 
 # Between records and a model's arrays: where inputs take the model's signs, and lose them again.
-
-ZERO_BY_DEFAULT = ("wind_speed", "wind_direction", "F3", "M5", "delta_f1", "delta_f2", "alpha_w", "alpha_f",
-                   "depth", "bucket", *TWIN_DIFFERENCES.values())  # fmt: skip
-"""Inputs that are zero where they are not recorded; water of depth zero is deep."""
 
 
 def inputs_of(model: Model, record: Record) -> Array:
@@ -181,6 +174,8 @@ def commanded(
     Raises:
         DivergedError: the subject runs away; when, and which state.
     """
+    from seatrial.numerics.kernels.feedback import steer
+
     states, applied = np.empty((count, len(start))), np.empty((count, len(inputs)))
     lost = steer(
         model.compiled.rates, command, start.copy(), inputs.copy(), model.parameters.values, memory, dt, states, applied
@@ -245,6 +240,9 @@ def trajectory(
     Raises:
         InputError: a parameter has no value, or `substeps` is less than one.
     """
+    from seatrial.physics.simulate.batch import error_over_range, sufficient_substeps
+    from seatrial.physics.simulate.linear import batch_class
+
     if model.parameters.missing:
         raise InputError(f"model '{model.name}' has no value for {', '.join(model.parameters.missing)}")
     if substeps is not None and substeps < 1:

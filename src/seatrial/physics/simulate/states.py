@@ -3,17 +3,19 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.core.equations.model import RUDDER
+from seatrial.core.equations.model import RUDDER, ZERO_BY_DEFAULT
 from seatrial.core.values import NOTATION, Array, Index, InputError, Record, spelling_hint
-from seatrial.numerics.kernels.integrate import evaluate
 from seatrial.numerics.local_polynomials import smoothed_locally
 from seatrial.physics.sensors.measured_outputs import is_late
-from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch, error_over_range, sufficient_substeps
-from seatrial.physics.simulate.replay import ZERO_BY_DEFAULT, inputs_of
+from seatrial.physics.simulate.replay import inputs_of
+
+if TYPE_CHECKING:
+    from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
 
 # States that follow the inputs alone (thrusters behind their lags): known from the commands of a run.
 
@@ -101,7 +103,7 @@ class ActuatorHistory:
         """The actuator states."""
         return self.model.states
 
-    def starts(self, parameters: Array, corrections: Array, kinds: tuple[InputCorrection, ...]) -> Array:
+    def starts(self, parameters: Array, corrections: Array, kinds: "tuple[InputCorrection, ...]") -> Array:
         """Return the states at the start of each segment, (segments, states).
 
         parameters: of each session, all of the model's, (sessions, np); corrections: of each session, (sessions, n).
@@ -112,7 +114,7 @@ class ActuatorHistory:
         return rows[self.row]
 
     def slopes(
-        self, names: tuple[str, ...], parameters: Array, corrections: Array, kinds: tuple[InputCorrection, ...]
+        self, names: tuple[str, ...], parameters: Array, corrections: Array, kinds: "tuple[InputCorrection, ...]"
     ) -> Array:
         """Return the derivatives of `starts` by the named parameters, then by corrections, (segments, states, n)."""
         batch = self._batch(names, kinds)
@@ -124,7 +126,9 @@ class ActuatorHistory:
     def _rest(self) -> Array:
         return np.zeros((len(self.offsets) - 1, len(self.model.states)))
 
-    def _batch(self, names: tuple[str, ...], kinds: tuple[InputCorrection, ...]) -> SegmentBatch:
+    def _batch(self, names: tuple[str, ...], kinds: "tuple[InputCorrection, ...]") -> "SegmentBatch":
+        from seatrial.physics.simulate.batch import SegmentBatch
+
         return SegmentBatch(
             self.model, self.inputs, self.offsets, self.dt, self.model.states, names, kinds, (), self.substeps
         )
@@ -132,6 +136,8 @@ class ActuatorHistory:
 
 def actuator_motion(model: Model, inputs: Array, dt: float) -> dict[str, Array]:
     """Return the actuator states along inputs (n, nu), (n,) each, at the model's values; what is NaN diverged."""
+    from seatrial.physics.simulate.batch import error_over_range, sufficient_substeps
+
     run = np.zeros(1, dtype=np.int64)
     history = ActuatorHistory.from_runs(model, (inputs,), dt, run, run, run)
     if history is None:
@@ -180,6 +186,8 @@ def held_inputs(model: Model, values_by_name: Mapping[str, float], rudder: str) 
 def approach_speed(model: Model, held: Array) -> float:
     """Return the speed u [m/s] at which surge is in balance on a straight course without drift."""
     from scipy.optimize import brentq
+
+    from seatrial.numerics.kernels.integrate import evaluate
 
     place, parameters = model.states.index("u"), model.parameters.values
     state, rates = settled_actuators(model, held), np.empty(len(model.states))
@@ -294,12 +302,6 @@ def hidden_states(model: Model, records: Sequence[Record]) -> tuple[str, ...]:
     hidden = tuple(s for s in model.states if s not in NOTATION and not is_late(s) and not all(s in r for r in records))
     following = actuator_states(model) if hidden else ()
     return tuple(s for s in hidden if s not in following)
-
-
-def rest_parameter(model: Model, state: str) -> str:
-    """Return the parameter for a state's value at rest, ``phi_0`` of ``phi``; empty where the model has none."""
-    name = f"{state}_0"
-    return name if state in model.states and name in model.parameters else ""
 
 
 def unobserved_states(model: Model, record: Record) -> tuple[str, ...]:

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from scipy.optimize import brentq
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Provenance, Record, frozen, spelling_hint
@@ -84,6 +83,7 @@ def straight_at_speed(model: Model, speed: float, inputs: Mapping[str, float] | 
     Raises:
         InputError: as `straight_by_thrusters`.
     """
+    from scipy.optimize import brentq
 
     def beyond(ahead: float) -> float:
         try:

@@ -48,6 +48,9 @@ _QUANTITY_NAMES = (
 )  # fmt: skip
 _VALUE_NAMES, _SHARE_OF_NAMES = ("value", "val", "reading", "data"), 0.5
 _ASCII_COMPATIBLE = ("utf-8", "cp1252", "iso8859-1", "ascii")
+# bytes of a file that NumPy reads by itself, ours: it takes as long for them as importing pandas; whole numbers from
+# which on floats leave some out; a whole number with a minus that it does not need, which whole columns drop
+_SMALL_BYTES, _LARGEST_WHOLE, _MINUS_ZERO = 2**22, 2.0**53, re.compile(r"-0+(?![.\deE])")
 # unpacked over packed bytes of a .gz, and bytes that any may unpack to; ours: tables of numbers reach 30
 _LARGEST_EXPANSION, _ALWAYS_ALLOWED = 200, 2**26
 
@@ -307,15 +310,20 @@ def read_text(path: Path, layout: Layout) -> Log:
     decimal = _decimal_sign([sample_line, *lines], separator, path.name)
     if b'"' in data:
         _refuse_open_quotes(data, start, path.name)
-    source = str(path) if head is not None else _after_lines(data, start)
-    del data
-    has_spaces = f"{separator} " in sample_line
-    frame = _data_frame(source, start, separator, decimal, path.name, has_spaces=has_spaces)
+    columns = None
+    if path.stat().st_size <= _SMALL_BYTES:
+        columns = _plain_numbers(data if head is None else path.read_bytes(), start, separator)
+    if columns is None:
+        source = str(path) if head is not None else _after_lines(data, start)
+        del data
+        has_spaces = f"{separator} " in sample_line
+        frame = _data_frame(source, start, separator, decimal, path.name, has_spaces=has_spaces)
+        columns = [_column_cells(frame[column], decimal) for column in frame.columns]
     above = [column_names(line, separator, path.name) for line in header] if layout.has_named_columns else []
-    cells = with_sides([_column_cells(frame[column], decimal) for column in frame.columns])
+    cells = with_sides(columns)
     width = len(cells)
-    columns = table_header(above, width)
-    table = RawTable(path.name, columns.names_of(width), cells, start + 1, "", columns.units_of(width))
+    names = table_header(above, width)
+    table = RawTable(path.name, names.names_of(width), cells, start + 1, "", names.units_of(width))
     return Log(path.name, _topics_of(table) or (table,))
 
 
@@ -404,6 +412,30 @@ def _refuse_open_quotes(data: bytes, start: int, file: str) -> None:
                 f"{file}: row {number} has a quote that is opened and not closed, which would swallow the rows after "
                 "it; remove the quote"
             )
+
+
+def _plain_numbers(data: bytes, start: int, separator: str) -> list[np.ndarray] | None:
+    """The columns of a small table with a plain number in every cell, as pandas has them; None of another table.
+
+    Importing pandas takes longer than all else that is done with such a file.
+    """
+    rows = [row.decode("ascii", errors="replace") for row in data.splitlines()[start:]]
+    delimiter = None if separator == _WHITESPACE else separator
+    blank = " \t" if delimiter is None else delimiter
+    if set().union(*rows) - {*"0123456789.eE+-", *blank} or any(map(_MINUS_ZERO.search, rows)):
+        return None
+    try:
+        table = np.loadtxt(rows, delimiter=delimiter, comments=None, ndmin=2)
+    except ValueError:  # a row of another number of cells, or a cell that is no number
+        return None
+    if len(table) < len(rows) or not np.all(np.abs(table) < _LARGEST_WHOLE):
+        return None
+    is_whole = np.all(table == np.round(table), axis=0)
+    for k in np.flatnonzero(is_whole).tolist():
+        is_whole[k] = not set().union(*(row.split(delimiter)[k] for row in rows)) & {*".eE"}
+    return [
+        column.astype(np.int64) if whole else column for column, whole in zip(table.T.copy(), is_whole, strict=True)
+    ]
 
 
 def _data_frame(
