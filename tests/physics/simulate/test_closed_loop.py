@@ -49,6 +49,19 @@ def follower(plant: Block, servo: tuple[Block, ...] = ()) -> TransferLoop:
     return TransferLoop("follower", (), terms, (), servo, plant, plant, gains("P", "I"), "phi", "alpha_f", "alpha_w")
 
 
+def test_a_sampled_loop_without_limits_is_its_difference_equations() -> None:
+    """No sum that rounds beside the order holds the integral: x' = (a - x) / 2, order held, Tustin's rule."""
+    loop, T, push = follower(Block("lag", (1.0,), (2.0, 1.0))), 0.1, 0.3 * swell(0.1 * np.arange(400))
+    sampled = replace(loop, sampling=Sampling(T))
+    made = closed_loop(plant_model(loop), sampled, np.array([0.7, 0.9]), 0.0 * push, T, reference=push, **FINS)
+    keeps, x, integral, before = math.exp(-0.5 * T), 0.0, 0.0, 0.0
+    for k, wanted in enumerate(push):
+        assert made["phi"][k] == pytest.approx(x, abs=1e-15)
+        error = wanted - x
+        integral, before = integral + 0.5 * T * (error + before), error
+        x = keeps * x + (1.0 - keeps) * (0.7 * error + 0.9 * integral)
+
+
 def autopilot(plant: Block) -> TransferLoop:
     """Proportional and filtered derivative gains."""
     terms = (Term("P", Block("proportional")), Term("D", Block("derivative", (1.0, 0.0), (0.5, 1.0))))

@@ -18,6 +18,7 @@ from seatrial.numerics.kernels.kernel import (
     VECTOR,
     kernel,
 )
+from seatrial.numerics.kernels.linear import advance
 
 # Integration with a command in the loop, held over its step; and the command of a linear controller with an actuator.
 
@@ -32,8 +33,10 @@ from seatrial.numerics.kernels.kernel import (
 _WORK_ROWS = 6  # scratch of a step: x, y and the four stages of `rk4_step`
 
 
-@kernel(I8(FUNCTION, COMMAND, VECTOR, VECTOR, VECTOR, VECTOR, F8, MATRIX, MATRIX, MATRIX), **LEAN)
-def _steer(f, command, x0, u, p, memory, dt, x_out, u_out, work):
+@kernel(
+    I8(FUNCTION, COMMAND, VECTOR, VECTOR, VECTOR, VECTOR, F8, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX), **LEAN
+)
+def _steer(f, command, x0, u, p, memory, dt, e, g0, g1, x_out, u_out, work):
     nx = x0.size
     x, y, k1, k2, k3, k4 = work[0], work[1], work[2], work[3], work[4], work[5]
     for i in range(nx):
@@ -44,20 +47,25 @@ def _steer(f, command, x0, u, p, memory, dt, x_out, u_out, work):
         command(t, x, memory, u)
         for i in range(nx):
             x_out[row, i] = x[i]
-        for j in range(u.size):
+        for j in range(u_out.shape[1]):
             u_out[row, j] = u[j]
         if not size < DIVERGED:
             return row
-        size = rk4_step(f, t, x, u, u, u, p, dt, k1, k2, k3, k4, y)
+        size = advance(e, g0, g1, x, u, u, y) if e.size > 0 else rk4_step(f, t, x, u, u, u, p, dt, k1, k2, k3, k4, y)
     return -1
 
 
-def steer(f, command, x0, u_start, p, memory, dt, x_out, u_out):
+_NOT_LINEAR = (np.empty((0, 0)),) * 3
+
+
+def steer(f, command, x0, u_start, p, memory, dt, x_out, u_out, exact=_NOT_LINEAR):
     """Integrate with a command in the loop; return the step at which it diverged, or -1.
 
-    x_out, u_out: states and the input held from that sample on, one row a step.
+    x_out, u_out: states and the input held from that sample on, one row a step. exact: of an affine model e (nx, nx),
+    g0, g1 (nx, nu + 1) over a step, the constant 1 as the last input; then no step of Runge and Kutta is taken.
     """
-    return _steer(f, command, x0, u_start.copy(), p, memory, dt, x_out, u_out, np.empty((_WORK_ROWS, len(x0))))
+    work = np.empty((_WORK_ROWS, len(x0)))
+    return _steer(f, command, x0, np.append(u_start, 1.0), p, memory, dt, *exact, x_out, u_out, work)
 
 
 @njit(inline="always", **OPTIONS)
@@ -72,7 +80,18 @@ def clamp(value, bound):
     return min(max(value, -bound), bound)
 
 
-@njit(**OPTIONS)
+@njit(inline="always", **OPTIONS)
+def _followed(value, order, limit, slew):
+    """Return where a value goes in a step after its order: to the order itself where the limits let it.
+
+    A sum that rounds beside the order would look as if a limit had held it.
+    """
+    if abs(order) <= limit and abs(order - value) <= slew:
+        return order
+    return clamp(value + clamp(clamp(order, limit) - value, slew), limit)
+
+
+@njit(inline="always", **OPTIONS)
 def effective_angle(angle, stall, loss):
     """Return the angle that would lift as much without stall: beyond it, `loss` is lost for each unit, down to 0."""
     size = abs(angle)
@@ -134,10 +153,8 @@ def linear_controller(_, x, memory, u):
     order = _row_times_states(memory, row, states, n) + memory[row + n] * error + memory[row + n + 1] * coming
     order += memory[fed_forward + k + 1]
     angle = memory[ANGLE]
-    # clamped once more: the sum may round beyond the limit
-    new = clamp(angle + clamp(clamp(order, memory[LIMIT]) - angle, memory[SLEW]), memory[LIMIT])
-    is_free = abs(order) <= memory[LIMIT] and abs(order - angle) <= memory[SLEW]
-    memory[SATURATION_EXCESS] = 0.0 if is_free else order - new
+    new = _followed(angle, order, memory[LIMIT], memory[SLEW])
+    memory[SATURATION_EXCESS] = order - new
     stall, loss = memory[STALL], memory[LOSS]
     lift = effective_angle(new, stall, loss)
     # the mean over the step, sharpened: the formula at the head of this file
@@ -161,37 +178,25 @@ def linear_controller(_, x, memory, u):
 BLOCK_ORDER, BLOCK_GAIN, BLOCK_HOLDS, BLOCK_LAST, BLOCK_HEAD = range(5)
 
 
-@njit(**OPTIONS)
+@njit(inline="always", **OPTIONS)
 def _sense(memory, error):
     """Move the sensor on by an error that ran straight since the last step, and what was misread then and stood."""
     n, at = int(memory[SENSOR_ORDER]), int(memory[SENSOR])
-    g0 = at + n * n
-    g1, c = g0 + n, g0 + 2 * n
-    states, scratch = c + n + 1, c + 2 * n + 1
-    last, misread = scratch + n, memory[READING_ERROR]
+    states, misread = at + controller_size(n) - 1, memory[READING_ERROR]
+    last = states + 2 * n
     if memory[STEP] > 0.0:
-        for i in range(n):
-            total = memory[g0 + i] * (memory[last] + misread) + memory[g1 + i] * (error + misread)
-            for j in range(n):
-                total += memory[at + j * n + i] * memory[states + j]
-            memory[scratch + i] = total
-        for i in range(n):
-            memory[states + i] = memory[scratch + i]
+        _advance(memory, at, states, n, memory[last] + misread, error + misread)
     memory[last] = error
 
 
-@njit(**OPTIONS)
-def _sensed(memory, error):
-    """Return what the sensor shows of an error."""
-    n = int(memory[SENSOR_ORDER])
-    c = int(memory[SENSOR]) + n * n + 2 * n
-    seen = memory[c + n] * error
-    for i in range(n):
-        seen += memory[c + i] * memory[c + n + 1 + i]
-    return seen
+@njit(inline="always", **OPTIONS)
+def _answer(memory, at, n, value):
+    """Return what a law shows of a value now: c x + d value."""
+    c = at + n * n + 2 * n
+    return memory[c + n] * value + _row_times_states(memory, c, at + controller_size(n) - 1, n)
 
 
-@njit(**OPTIONS)
+@njit(inline="always", **OPTIONS)
 def _misread(memory, output, noise):
     """Return by how much a sample of the output is read too small."""
     read, unit = output + noise, memory[RESOLUTION]
@@ -200,7 +205,7 @@ def _misread(memory, output, noise):
     return output - read
 
 
-@njit(**OPTIONS)
+@njit(inline="always", **OPTIONS)
 def _through(memory, block, x, push):
     """Return the answer of a block's difference equation; one that holds keeps its last where it would push further.
 
@@ -221,7 +226,7 @@ def _through(memory, block, x, push):
     return y
 
 
-@njit(**OPTIONS)
+@njit(inline="always", **OPTIONS)
 def _ordered(memory, error, fed_forward):
     """Return the order of a sample: terms in parallel, filters in a row, what is fed forward."""
     excess, order, at = memory[ORDER_EXCESS], 0.0, int(memory[BLOCKS])
@@ -233,30 +238,18 @@ def _ordered(memory, error, fed_forward):
         order = _through(memory, at, order, 0.0)
         at += BLOCK_HEAD + 3 * int(memory[at + BLOCK_ORDER]) + 2
     order += fed_forward
-    held = memory[HELD_ORDER]
-    held = clamp(held + clamp(clamp(order, memory[LIMIT]) - held, memory[SAMPLE_SLEW]), memory[LIMIT])
+    held = _followed(memory[HELD_ORDER], order, memory[LIMIT], memory[SAMPLE_SLEW])
     memory[HELD_ORDER] = held
     return order, order - held
 
 
-@njit(**OPTIONS)
+@njit(inline="always", **OPTIONS)
 def _served(memory, order):
     """Return what the servo would do without limits at the start and the end of a step in which an order stands."""
     n, at = int(memory[SERVO_ORDER]), int(memory[SERVO])
-    g = at + n * n
-    c = g + n
-    states, scratch = c + n + 1, c + 2 * n + 1
-    before = now = memory[c + n] * order
-    for i in range(n):
-        before += memory[c + i] * memory[states + i]
-        total = memory[g + i] * order
-        for j in range(n):
-            total += memory[at + j * n + i] * memory[states + j]
-        memory[scratch + i] = total
-    for i in range(n):
-        memory[states + i] = memory[scratch + i]
-        now += memory[c + i] * memory[states + i]
-    return before, now
+    before = _answer(memory, at, n, order)
+    _advance(memory, at, at + controller_size(n) - 1, n, order, order)
+    return before, _answer(memory, at, n, order)
 
 
 @kernel(COMMAND_SIGNATURE, **LEAN)
@@ -273,7 +266,8 @@ def sampled_controller(_, x, memory, u):
     if k % every == 0:
         misread = _misread(memory, output, memory[int(memory[NOISE]) + k // every])
         memory[READING_ERROR] = misread
-        memory[LAST_ORDER], excess = _ordered(memory, _sensed(memory, error + misread), memory[fed_forward + k])
+        seen = _answer(memory, int(memory[SENSOR]), int(memory[SENSOR_ORDER]), error + misread)
+        memory[LAST_ORDER], excess = _ordered(memory, seen, memory[fed_forward + k])
         memory[ORDER_EXCESS] = excess
     queue, size = int(memory[QUEUE]), int(memory[QUEUE_SIZE])
     late = memory[LAST_ORDER]
@@ -283,7 +277,7 @@ def sampled_controller(_, x, memory, u):
     begun, wanted = _served(memory, late)
     begun, wanted = clamp(begun, memory[LIMIT]), clamp(wanted, memory[LIMIT])
     angle, slew = memory[ANGLE], memory[SLEW]
-    new = clamp(angle + clamp(wanted - angle, slew), memory[LIMIT])
+    new = _followed(angle, wanted, memory[LIMIT], slew)
     # a triangle is lost where the actuator first has to catch up with an order that jumped
     gap = begun - angle
     mean = 0.5 * (begun + new) - 0.5 * gap * min(abs(gap) / slew, 1.0) if new == wanted else 0.5 * (angle + new)

@@ -417,17 +417,24 @@ class TransferLoop:
             row[len(row) - len(made) :] = made
         return frozen(common), frozen(numerators)
 
+    @cached_property
+    def _integrating_terms(self) -> tuple[tuple[int, Index], ...]:
+        """Poles at the origin that terms of one denominator have, and which terms those are."""
+        made = []
+        for den in dict.fromkeys(term.block.den for term in self.terms):
+            at_origin = len(den) - len(np.trim_zeros(den, "b"))
+            if at_origin:
+                made.append((at_origin, np.flatnonzero([term.block.den == den for term in self.terms])))
+        return tuple(made)
+
     def idle_integrators(self, gains: Array) -> Index:
         """Return how many poles at the origin are those of terms whose gains are all zero, of gains (m, g), (m,).
 
         Such a term moves nothing: d and the n_i of the others have the factor s so many times, which is left out.
         """
         idle = np.zeros(len(gains), dtype=np.int64)
-        for den in dict.fromkeys(term.block.den for term in self.terms):
-            at_origin = len(den) - len(np.trim_zeros(den, "b"))
-            if at_origin:
-                of_den = [i for i, term in enumerate(self.terms) if term.block.den == den]
-                idle += at_origin * np.all(gains[:, of_den] == 0.0, axis=1)
+        for at_origin, terms in self._integrating_terms:
+            idle += at_origin * ~gains[:, terms].any(axis=1)
         return idle
 
     def fraction(self, gains: Array) -> tuple[Array, Array]:

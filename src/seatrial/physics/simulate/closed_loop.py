@@ -15,7 +15,7 @@ from seatrial.numerics.kernels.integrate import evaluate
 from seatrial.numerics.kernels.linear import propagators, replay
 from seatrial.physics.loops import Block, TransferLoop
 from seatrial.physics.loops.discrete import difference_equation, holding_terms
-from seatrial.physics.loops.loop import Sampling, controllable_form, held_step, in_series, straight_step
+from seatrial.physics.loops.loop import Sampling, controllable_form, in_series, straight_step
 from seatrial.physics.loops.loop_states import StateSpace
 from seatrial.physics.simulate.replay import commanded, record_of
 
@@ -157,8 +157,8 @@ def sampled_laws(loop: TransferLoop, gains: Array, dt: float) -> tuple[Array, Ma
     """
     assert loop.sampling is not None
     T, every = loop.sampling.sample_s, steps_a_sample(loop.sampling, dt)
-    sensor, sensor_order = _sensor(in_series("sensor", loop.sensor), dt)
-    servo, servo_order = _servo(in_series("servo", loop.servo), dt)
+    sensor, sensor_order = _stepped(in_series("sensor", loop.sensor), dt)
+    servo, servo_order = _stepped(in_series("servo", loop.servo), dt)
     holds, sign = holding_terms(loop)
     terms = [
         _block(term.block, T, float(gain), sign if held else 0.0)
@@ -193,21 +193,12 @@ def _block(block: Block, T: float, gain: float, holds: float) -> Array:
 
 
 @lru_cache(maxsize=_KEPT)
-def _sensor(block: Block, dt: float) -> tuple[Array, int]:
-    """Return a sensor for an input that runs straight over each step (Franklin, Powell & Workman 1998, section 6.3)."""
+def _stepped(block: Block, dt: float) -> tuple[Array, int]:
+    """Return a block for an input that runs straight over each step (Franklin, Powell & Workman 1998, section 6.3)."""
     A, b, c, d = controllable_form(block)
     E, before, after = straight_step(A, b, dt)
     n = len(b)
     return np.concatenate([E.T.ravel(), before, after, c, [d], np.zeros(2 * n + 1)]), n
-
-
-@lru_cache(maxsize=_KEPT)
-def _servo(block: Block, dt: float) -> tuple[Array, int]:
-    """Return a servo for an input that is held over each step."""
-    A, b, c, d = controllable_form(block)
-    E, held = held_step(A, b, dt)
-    n = len(b)
-    return np.concatenate([E.T.ravel(), held, c, [d], np.zeros(2 * n)]), n
 
 
 # A linear loop simulated in time: output, actuator and actuator rate, met by one series of the disturbance.

@@ -25,7 +25,7 @@ from seatrial.core.values.notation import OPPOSITE, TWIN_DIFFERENCES
 from seatrial.numerics.kernels.feedback import steer
 from seatrial.physics.manoeuvres.recognition import TRUE
 from seatrial.physics.simulate.batch import error_over_range, sufficient_substeps
-from seatrial.physics.simulate.linear import batch_class
+from seatrial.physics.simulate.linear import batch_class, exact_step
 
 # Between records and a model's arrays: where inputs take the model's signs, and lose them again.
 
@@ -176,6 +176,7 @@ def commanded(
 ) -> tuple[Array, Array]:  # fmt: skip
     """Return states (n, nx) and inputs (n, nu) of a model that a command steers for `count` steps of dt [s].
 
+    Steps of an affine model are exact, of another those of Runge and Kutta.
     memory: of the command, which writes in it; start: (nx,); inputs: (nu,), held but for what the command sets.
 
     Raises:
@@ -183,8 +184,9 @@ def commanded(
     """
     states, applied = np.empty((count, len(start))), np.empty((count, len(inputs)))
     lost = steer(
-        model.compiled.rates, command, start.copy(), inputs.copy(), model.parameters.values, memory, dt, states, applied
-    )
+        model.compiled.rates, command, start.copy(), inputs, model.parameters.values, memory, dt, states, applied,
+        *((exact_step(model, dt),) if model.is_affine else ()),
+    )  # fmt: skip
     last = count if lost < 0 else lost + 1
     time = frozen(dt * np.arange(last))
     require_bounded(model, time, states[:last], subject)
