@@ -8,7 +8,12 @@ from scipy.special import chdtri, ndtri
 
 from seatrial.control.task import TrimmedShip, TuningTask
 from seatrial.control.verification.course_changes import GainTest, verify_changes
-from seatrial.control.verification.stabiliser import StabiliserLog, prior_deviations, verify_stabiliser
+from seatrial.control.verification.stabiliser import (
+    StabiliserLog,
+    departure_frequencies,
+    prior_deviations,
+    verify_stabiliser,
+)
 from seatrial.core.equations import Model
 from seatrial.core.results.coefficients import Coefficient
 from seatrial.core.results.fit import Fit
@@ -291,6 +296,16 @@ def _leg_findings(task: TuningTask, log: StabiliserLog) -> list[Finding]:
     if all(leg.is_controlled for leg in log.legs):
         findings.append(Finding(
             Severity.INFO, "no-leg-off", "no leg has the controller off: the reduction rests on the model alone",
+        ))  # fmt: skip
+    departures = log.fit.departures
+    if log.fit.departure_evidence > float(chdtri(len(departures), _CHANCE)):
+        place = int(np.argmax(np.abs(departures)))
+        findings.append(Finding(
+            Severity.WARNING, "model-moved",
+            f"waves excite the {task.loop.output} otherwise than the assumed spectrum and effective slope, most at "
+            f"{departure_frequencies(task.loop)[place]:.2g} rad/s",
+            f"a factor of {math.exp(departures[place]):.2g} in energy", "check heading, hull and spectrum of the loop "
+            "file; the other values were found with the excitation that the log shows",
         ))  # fmt: skip
     if not log.fit.is_converged:
         findings.append(Finding(
