@@ -227,7 +227,8 @@ def _gains_with_margin(judge: GainEvaluator, tried: list[_Candidate], like: _Can
     evaluator = replace(judge.within(within), objectives=(task.motion,))
     named = [dict(zip(one.evaluator.loop.gains.names, one.gains.tolist(), strict=True)) for one in tried]
     known = np.array([[gains.get(name, 0.0) for name in judge.loop.gains.names] for gains in named])
-    return least_output_gains(evaluator, np.concatenate([spread_gains(evaluator, seed), known]))
+    near = [known[i] for i, one in enumerate(tried) if one is like]
+    return least_output_gains(evaluator, np.concatenate([spread_gains(evaluator, seed), known]), near)
 
 
 def _best_candidate(candidates: list[_Candidate]) -> _Candidate:

@@ -73,9 +73,7 @@ def sea_spectrum(sea: Array) -> Spectrum:
 _NO_KNOTS: Array = np.empty(0)
 
 
-def encountered_sea(
-    bins: Array, U: float, beta: float, effect: WaveEffect, knots: Array = _NO_KNOTS
-) -> EncounteredSea:
+def encountered_sea(bins: Array, U: float, beta: float, effect: WaveEffect, knots: Array = _NO_KNOTS) -> EncounteredSea:
     """Return the nodes for transforms at `bins` (k,) [rad/s], a ship of speed U [m/s], heading beta [rad, 0 following].
 
     knots: (j,), rising [rad/s], encounter frequencies at which the spectrum may depart from the assumed one, straight

@@ -1,4 +1,4 @@
-"""Integration with a command in the loop: linear and sampled controllers, and a track followed."""
+"""Integration with a command in the loop: a controller that samples, and a track followed."""
 
 import math
 
@@ -20,15 +20,14 @@ from seatrial.numerics.kernels.kernel import (
 )
 from seatrial.numerics.kernels.linear import advance
 
-# Integration with a command in the loop, held over its step; and the command of a linear controller with an actuator.
+# Integration with a command in the loop, held over its step.
 
 # places in the memory
 (
-    CONTROLLER_ORDER, COUNT, OUTPUT, ACTUATOR, DISTURBED_INPUT, TRIM, EFFECT, LIMIT, SLEW, STALL, LOSS, STEP, ANGLE,
-    EFFECTIVE_ANGLE, SATURATION_EXCESS, ANTI_WINDUP, OUTPUT_LAST, OUTPUT_BEFORE_LAST, ERROR_LAST, SERIES, EVERY,
+    COUNT, OUTPUT, ACTUATOR, DISTURBED_INPUT, TRIM, EFFECT, LIMIT, SLEW, STALL, LOSS, STEP, ANGLE, SERIES, EVERY,
     SENSOR, SENSOR_ORDER, SERVO, SERVO_ORDER, BLOCKS, TERM_COUNT, FILTER_COUNT, QUEUE, QUEUE_SIZE, NOISE, RESOLUTION,
     SAMPLE_SLEW, HELD_ORDER, ORDER_EXCESS, LAST_ORDER, READING_ERROR, HEAD_SIZE,
-) = range(38)  # fmt: skip
+) = range(31)  # fmt: skip
 
 _WORK_ROWS = 6  # scratch of a step: x, y and the four stages of `rk4_step`
 
@@ -69,9 +68,9 @@ def steer(f, command, x0, u_start, p, memory, dt, x_out, u_out, exact=_NOT_LINEA
 
 
 @njit(inline="always", **OPTIONS)
-def controller_size(n):
-    """Return the places of one law: E by columns (n, n), g0 (n), g1 (n), the order a step ahead: row (n), r0, r1."""
-    return n * n + 3 * n + 2
+def law_size(n):
+    """Return the places of a law: E by columns (n, n), g0 (n), g1 (n), c (n), d; its states (n) stand behind it."""
+    return n * n + 3 * n + 1
 
 
 @njit(inline="always", **OPTIONS)
@@ -103,7 +102,7 @@ def effective_angle(angle, stall, loss):
 
 @njit(inline="always", **OPTIONS)
 def _advance(memory, law, states, n, last_error, error):
-    """Advance the controller's states over the step that ends now, column by column: views become vectors."""
+    """Advance the states of a law over the step that ends now, column by column: views become vectors."""
     g0, g1 = law + n * n, law + n * n + n
     before, now = memory[states : states + n], memory[states + n : states + 2 * n]
     for i in range(n):
@@ -125,53 +124,6 @@ def _row_times_states(memory, start, states, n):
     return total
 
 
-@kernel(COMMAND_SIGNATURE, **LEAN)
-def linear_controller(_, x, memory, u):
-    """Set order, angle and effect; slow states are held while a limit bites and they would drive further into it."""
-    n, count, k = int(memory[CONTROLLER_ORDER]), int(memory[COUNT]), int(memory[STEP])
-    size = controller_size(n)
-    slow = HEAD_SIZE + 2 * size
-    states = slow + n + 1
-    reference = int(memory[SERIES])
-    disturbance = reference + count + 1
-    fed_forward = disturbance + count
-    angles = fed_forward + count + 1
-    y = x[int(memory[OUTPUT])]
-    error = memory[reference + k] - y
-    ahead = y
-    if k > 0:
-        _advance(memory, HEAD_SIZE + int(memory[ANTI_WINDUP]) * size, states, n, memory[ERROR_LAST], error)
-        ahead = 2.0 * y - memory[OUTPUT_LAST]
-    if k > 1:
-        ahead += y - 2.0 * memory[OUTPUT_LAST] + memory[OUTPUT_BEFORE_LAST]
-    excess = memory[SATURATION_EXCESS]
-    drift = _row_times_states(memory, slow, states, n) + memory[slow + n] * error
-    memory[ANTI_WINDUP] = 1.0 if excess * drift > 0.0 else 0.0
-    law = HEAD_SIZE + int(memory[ANTI_WINDUP]) * size
-    row = law + n * n + 2 * n
-    coming = memory[reference + k + 1] - ahead
-    order = _row_times_states(memory, row, states, n) + memory[row + n] * error + memory[row + n + 1] * coming
-    order += memory[fed_forward + k + 1]
-    angle = memory[ANGLE]
-    new = _followed(angle, order, memory[LIMIT], memory[SLEW])
-    memory[SATURATION_EXCESS] = order - new
-    stall, loss = memory[STALL], memory[LOSS]
-    lift = effective_angle(new, stall, loss)
-    # the mean over the step, sharpened: the formula at the head of this file
-    mean = (2.0 * lift + 5.0 * effective_angle(angle, stall, loss) - memory[EFFECTIVE_ANGLE]) / 6.0
-    memory[EFFECTIVE_ANGLE] = effective_angle(angle, stall, loss)
-    place, disturbed = int(memory[ACTUATOR]), int(memory[DISTURBED_INPUT])
-    u[place] = memory[TRIM] + memory[EFFECT] * mean
-    if disturbed == place:
-        u[place] += memory[disturbance + k]
-    elif disturbed >= 0:
-        u[disturbed] = memory[disturbance + k]
-    memory[ERROR_LAST], memory[OUTPUT_BEFORE_LAST], memory[OUTPUT_LAST] = error, memory[OUTPUT_LAST], y
-    memory[ANGLE] = new
-    memory[angles + k + 1] = new
-    memory[STEP] = k + 1.0
-
-
 # The command of a controller that samples: difference equations, an order that is held and acts late, and limits.
 
 # places of a block in the memory: order, gain, sign of what it holds, last output, and where its numbers begin
@@ -182,7 +134,7 @@ BLOCK_ORDER, BLOCK_GAIN, BLOCK_HOLDS, BLOCK_LAST, BLOCK_HEAD = range(5)
 def _sense(memory, error):
     """Move the sensor on by an error that ran straight since the last step, and what was misread then and stood."""
     n, at = int(memory[SENSOR_ORDER]), int(memory[SENSOR])
-    states, misread = at + controller_size(n) - 1, memory[READING_ERROR]
+    states, misread = at + law_size(n), memory[READING_ERROR]
     last = states + 2 * n
     if memory[STEP] > 0.0:
         _advance(memory, at, states, n, memory[last] + misread, error + misread)
@@ -193,7 +145,7 @@ def _sense(memory, error):
 def _answer(memory, at, n, value):
     """Return what a law shows of a value now: c x + d value."""
     c = at + n * n + 2 * n
-    return memory[c + n] * value + _row_times_states(memory, c, at + controller_size(n) - 1, n)
+    return memory[c + n] * value + _row_times_states(memory, c, at + law_size(n), n)
 
 
 @njit(inline="always", **OPTIONS)
@@ -248,7 +200,7 @@ def _served(memory, order):
     """Return what the servo would do without limits at the start and the end of a step in which an order stands."""
     n, at = int(memory[SERVO_ORDER]), int(memory[SERVO])
     before = _answer(memory, at, n, order)
-    _advance(memory, at, at + controller_size(n) - 1, n, order, order)
+    _advance(memory, at, at + law_size(n), n, order, order)
     return before, _answer(memory, at, n, order)
 
 
@@ -257,9 +209,9 @@ def sampled_controller(_, x, memory, u):
     """Sample where it is time, let the order wait, and move the actuator within its limits."""
     count, k, every = int(memory[COUNT]), int(memory[STEP]), int(memory[EVERY])
     reference = int(memory[SERIES])
-    disturbance = reference + count + 1
+    disturbance = reference + count
     fed_forward = disturbance + count
-    angles = fed_forward + count + 1
+    angles = fed_forward + count
     output = x[int(memory[OUTPUT])]
     error = memory[reference + k] - output
     _sense(memory, error)
@@ -293,7 +245,7 @@ def sampled_controller(_, x, memory, u):
     memory[STEP] = k + 1.0
 
 
-# A craft that follows a track: line of sight orders the heading that a linear controller keeps.
+# A craft that follows a track: line of sight orders the heading that a controller keeps.
 
 # places in the memory
 (
@@ -312,7 +264,7 @@ def track_follower(t, x, memory, u):
     TURN, and is taken within ACCEPTANCE of it along the track.
     """
     count, k, every, reference = int(memory[COUNT]), int(memory[STEP]), int(memory[EVERY]), int(memory[SERIES])
-    block = reference + 4 * count + 3
+    block = reference + 4 * count + 1
     north, east = x[int(memory[block + NORTH])], x[int(memory[block + EAST])]
     if memory[block + LEG] == 0.0 and memory[block + CORNER] - north < memory[block + ACCEPTANCE]:
         memory[block + LEG], memory[block + NEW_LEG] = 1.0, k
@@ -322,7 +274,7 @@ def track_follower(t, x, memory, u):
         # distance to starboard of the leg (Fossen 2011, eq. (10.58))
         error = -(north - memory[block + CORNER]) * math.sin(course) + east * math.cos(course)
     memory[block + TRACK_HEAD + k] = error
-    if every > 1 and k % every != 0:
+    if k % every != 0:
         sampled_controller(t, x, memory, u)
         return
     delta, total = memory[block + LOOKAHEAD], error + memory[block + INTEGRAL_GAIN] * memory[block + INTEGRAL]
@@ -331,8 +283,4 @@ def track_follower(t, x, memory, u):
     order = before + clamp(course - math.atan(total / delta) - before, memory[block + ORDER_STEP])
     memory[block + ORDER] = order
     memory[reference + k] = order
-    if every > 0:
-        sampled_controller(t, x, memory, u)
-        return
-    memory[reference + k + 1] = order if k == 0 else 2.0 * order - before
-    linear_controller(t, x, memory, u)
+    sampled_controller(t, x, memory, u)
