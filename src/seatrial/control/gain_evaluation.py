@@ -121,9 +121,9 @@ class GainEvaluator:
         """Return all of the gains (n, g)."""
         if len(gains) != 1:
             return self.evaluated(self.of_each(gains))
-        return self.at(gains[0]).judged
+        return self.point(gains[0]).judged
 
-    def at(self, gains: Array) -> "EvaluatedPoint":
+    def point(self, gains: Array) -> "EvaluatedPoint":
         """Return one set of gains (g,); searches return to the last few for value, slopes and limits."""
         return self._remembered_point(np.asarray(gains, dtype=np.float64).tobytes())
 
@@ -267,28 +267,28 @@ def refine_gains(evaluator: GainEvaluator, start: Array, ceiling: Array | None =
     count, rows = 0 if ceiling is None else len(ceiling), evaluator.restriction_count
     top = np.ones(0) if ceiling is None else np.maximum(ceiling, _TINY)
 
-    def at(unit: Array) -> EvaluatedPoint:
-        return evaluator.at(all_gains(evaluator, (low + np.clip(unit, 0.0, 1.0) * width)[None])[0])
+    def point_of(unit: Array) -> EvaluatedPoint:
+        return evaluator.point(all_gains(evaluator, (low + np.clip(unit, 0.0, 1.0) * width)[None])[0])
 
     def value(unit: Array) -> float:
-        return float(np.sum(np.log(np.clip(at(unit).judged.objectives[0], _TINY, _HUGE))))
+        return float(np.sum(np.log(np.clip(point_of(unit).judged.objectives[0], _TINY, _HUGE))))
 
     def slope(unit: Array) -> Array:
-        point = at(unit)
+        point = point_of(unit)
         made = point.judged.objectives[0]
         if not np.all(np.isfinite(made) & (made > 0.0)):
             return np.zeros(len(unit))
         return (point.slopes[0][:, places] / made[:, None]).sum(axis=0) * width
 
     def constraint_margins(unit: Array) -> Array:
-        point = at(unit)
+        point = point_of(unit)
         left = 1.0 - np.minimum(point.judged.objectives[0, :count] / top, _LARGEST_EXCESS)
         is_stable = math.isfinite(point.judged.Ms[0])
         each = point.excess_of_each[0] if is_stable else np.full(rows, _LARGEST_EXCESS)
         return np.concatenate([left, -np.minimum(each, _LARGEST_EXCESS)])
 
     def constraint_slopes(unit: Array) -> Array:
-        point = at(unit)
+        point = point_of(unit)
         if not math.isfinite(point.judged.Ms[0]):
             return np.zeros((count + rows, len(unit)))
         excess = point.excess_of_each[1]
@@ -427,7 +427,7 @@ class _LocalProblem:
     def slopes(self, unit: Array) -> tuple[Array, Array, Array]:
         """Return slopes of the objective's logarithm (f,), excess (c,) and its slopes (c, f)."""
         places, (low, high) = free_gain_bounds(self.evaluator)
-        point, width = self.evaluator.at(self.gains(unit)), high - low
+        point, width = self.evaluator.point(self.gains(unit)), high - low
         excess, rows = point.excess_of_each
         value = point.judged.objectives[0, 0]
         return point.slopes[0][0, places] * width / value, excess, rows[:, places] * width

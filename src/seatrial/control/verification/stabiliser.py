@@ -327,9 +327,9 @@ def verify_stabiliser(task: TuningTask, gains: Array, records: Sequence[Record])
         raise InputError(f"the loop on '{task.loop.output}' is not verified in waves; that of roll is")
     loop = task.loop.with_gains(gains)
     legs = [_prepared(task, leg, loop, seaway) for leg in legs_on_and_off(records, loop, task.U)]
-    ship = np.hypot(prior_deviations(task), [OTHER_DAY, 0.0, 0.0])
-    priors = [LegPriors(ship, np.array(SEA_CHANGE), departure_covariance(deviation)) for deviation in _DEVIATIONS]
-    fit = max((fit_legs([leg.waves for leg in legs], one) for one in priors), key=lambda made: made.evidence)
+    ship, waves = np.hypot(prior_deviations(task), [OTHER_DAY, 0.0, 0.0]), [leg.waves for leg in legs]
+    priors = (LegPriors(ship, np.array(SEA_CHANGE), departure_covariance(deviation)) for deviation in _DEVIATIONS)
+    fit = max((fit_legs(waves, prior) for prior in priors), key=lambda fit: fit.evidence)
     verified = tuple(_verified_leg(leg, fit, k) for k, leg in enumerate(legs))
     quantities = _quantities(legs, fit)
     return StabiliserLog(verified, quantities, _reductions(legs, quantities[0]), fit)

@@ -142,10 +142,10 @@ def _sense(memory, error):
 
 
 @njit(inline="always", **OPTIONS)
-def _answer(memory, at, n, value):
+def _answer(memory, law, n, value):
     """Return what a law shows of a value now: c x + d value."""
-    c = at + n * n + 2 * n
-    return memory[c + n] * value + _row_times_states(memory, c, at + law_size(n), n)
+    c = law + n * n + 2 * n
+    return memory[c + n] * value + _row_times_states(memory, c, law + law_size(n), n)
 
 
 @njit(inline="always", **OPTIONS)
