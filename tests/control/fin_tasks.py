@@ -1,13 +1,15 @@
 """The published fin loop in its own sea, as tasks for tests."""
 
 import math
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from seatrial.control.front import Effort
 from seatrial.control.task import Seaway, TuningTask
 from seatrial.core.results.tuning import ControllerConstraints
-from seatrial.physics.loops import HullFactor, LoopSignal, Objective
+from seatrial.physics.loops import HullFactor, LoopSignal, Objective, Sampling
 from seatrial.physics.loops.objective import squared_deviation, variance
 from seatrial.physics.loops.structures import PUBLISHED_GAINS, Preamplifier, fin_loop
 from seatrial.physics.sea.spectrum import ittc
@@ -36,3 +38,9 @@ def fin_task(
     U = 18.0 * KNOT
     met = (Seaway(ittc(3.3), U, beta, HULL),)
     return TuningTask("which gains?", "fins", "published", fin_loop(preamplifier), met, objectives, restriction, U)
+
+
+def sampled_fin_task(preamplifier: Preamplifier = Preamplifier.WASHOUT, **settings: Any) -> TuningTask:
+    """The same as it runs in time: `fin_task` with samples every 0.05 s."""
+    task = fin_task(preamplifier, **settings)
+    return replace(task, loop=replace(task.loop, sampling=Sampling(0.05)))

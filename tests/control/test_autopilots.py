@@ -18,8 +18,9 @@ from seatrial.data.folder.model_file import ModelFile
 from seatrial.data.trial import load_trial
 from seatrial.data.trial.trial import Role
 from seatrial.estimation.identify import identify
-from seatrial.physics.loops import Block, LoopSignal, margins
+from seatrial.physics.loops import Block, LoopSignal, Sampling, margins
 from seatrial.physics.loops.autopilot import heading_loop
+from seatrial.physics.loops.discrete import default_sample_time
 from seatrial.physics.loops.objective import variance
 
 DEGREE = math.pi / 180.0
@@ -34,6 +35,7 @@ def autopilot_of(ship: TrimmedShip, L: float, gear: float, limit: float, rate: f
     """A 20 degree course change through a reference model of two ship lengths; limits of the rudder in degrees."""
     plant, disturbance = plant_and_disturbance(ship)
     loop = heading_loop(plant, disturbance, (Block("steering gear", (1.0,), (gear, 1.0)),))
+    loop = replace(loop, sampling=Sampling(default_sample_time(loop)))
     U = float(ship.state[0])
     demand = Demand(20.0 * DEGREE, 0.02, 2.0 * L / U, 40.0 * L / U)
     limits = ControllerConstraints(Ms=1.7, limit=limit * DEGREE, rate=rate * DEGREE)

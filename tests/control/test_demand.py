@@ -3,9 +3,9 @@
 import math
 from dataclasses import replace
 
+import control
 import numpy as np
 import pytest
-from scipy import signal
 
 from seatrial.control.controller import (
     reference_model,
@@ -18,11 +18,11 @@ from seatrial.control.controller import (
 from seatrial.control.ship import draw_parameters, plant_and_disturbance, plant_as_model, stable_draws, trim_ship
 from seatrial.control.task import Demand, SlowDisturbance, TrimmedShip, TuningTask
 from seatrial.core.results.tuning import ControllerConstraints
-from seatrial.core.values import Array, InputError
+from seatrial.core.values import InputError
 from seatrial.data.folder.model_file import ModelFile
-from seatrial.physics.loops import Block, LoopSignal, TransferLoop
+from seatrial.physics.loops import Block, LoopSignal, Sampling, TransferLoop
 from seatrial.physics.loops.autopilot import acceleration_feed_forward, heading_loop, pitch_loop, speed_loop
-from seatrial.physics.loops.discrete import controller_transfer_function, transfer_function
+from seatrial.physics.loops.discrete import open_loop_transfer_function
 from seatrial.physics.loops.objective import variance
 from seatrial.physics.models import model_named
 from seatrial.physics.models.published import kvlcc2
@@ -30,6 +30,11 @@ from seatrial.physics.simulate.closed_loop import REFERENCE, ActuatorLimits
 
 DEGREE = math.pi / 180.0
 GEAR = (Block("steering gear", (1.0,), (0.5, 1.0)),)
+
+
+def sampled(loop: TransferLoop) -> TransferLoop:
+    """The loop as it runs in time, nearly that in continuous time."""
+    return replace(loop, sampling=Sampling(0.01))
 
 
 def task_of(
@@ -58,7 +63,7 @@ def nomoto(K: float = 0.2, T: float = 8.0, sd: tuple[float, float] = (0.0, 0.0))
 
 def autopilot(ship: TrimmedShip, *parts: str) -> TransferLoop:
     plant, disturbance = plant_and_disturbance(ship)
-    return heading_loop(plant, disturbance, GEAR, parts=parts or ("KP", "KD"))
+    return sampled(heading_loop(plant, disturbance, GEAR, parts=parts or ("KP", "KD")))
 
 
 def test_the_reference_model_is_critically_damped() -> None:
@@ -87,25 +92,18 @@ def test_overshoot_and_settling_are_of_the_change() -> None:
     assert relative_overshoot(-output, -demand, (1, 101)) == pytest.approx(0.15)
 
 
-def answer(num: Array, den: Array, reference: Array, dt: float) -> Array:
-    """Of a linear system at rest to a series that runs straight between samples."""
-    return signal.lsim((num, den), reference, dt * np.arange(len(reference)))[1]
-
-
 @pytest.mark.parametrize("known", [True, False])
 def test_without_limits_a_linear_ship_follows_as_python_control_says(*, known: bool) -> None:
     ship = nomoto()
     loop = autopilot(ship, "KP", "KI", "KD")
     if not known:
         ship = plant_as_model(loop)
-    dt = 0.05
-    reference = reference_model(np.full(1200, 0.3), dt, 5.0).level
-    output, rudder = simulate_tracking(ship, loop, loop.gain_values, ActuatorLimits(), dt, reference)
-    controller, plant = controller_transfer_function(loop), transfer_function(loop.plant)
-    n_k, d_k, n_p, d_p = (c[0][0] for c in (controller.num, controller.den, plant.num, plant.den))
-    den = np.polyadd(np.polymul(d_k, d_p), np.polymul(n_k, n_p))
-    assert output == pytest.approx(answer(np.polymul(n_k, n_p), den, reference, dt), abs=1e-5)
-    assert rudder == pytest.approx(answer(np.polymul(n_k, d_p), den, reference, dt), abs=1e-5)
+    loop, every = replace(loop, sampling=Sampling(0.2)), 20
+    reference = reference_model(np.full(300, 0.3), 0.2, 5.0).level
+    held = np.repeat(reference, every)
+    output, _ = simulate_tracking(ship, loop, loop.gain_values, ActuatorLimits(), 0.2 / every, held)
+    closed = control.feedback(open_loop_transfer_function(loop), 1)
+    assert output[::every] == pytest.approx(control.forced_response(closed, inputs=reference).outputs, abs=1e-5)
 
 
 def test_the_reference_has_the_velocity_and_acceleration_of_its_level() -> None:
@@ -119,7 +117,7 @@ def test_the_reference_has_the_velocity_and_acceleration_of_its_level() -> None:
 def test_fed_forward_a_nomoto_ship_follows_without_error_whatever_the_gains() -> None:
     """(T r' + r) / K is the inverse of the ship: what is left is the steering gear's lag and the step's."""
     ship, dt = nomoto(), 0.01
-    loop = heading_loop(*plant_and_disturbance(ship), ())
+    loop = sampled(heading_loop(*plant_and_disturbance(ship), ()))
     motion = reference_model(np.full(6000, 0.3), dt, 12.0)
     law = acceleration_feed_forward(loop.plant, 1.0 / 12.0)
     assert (law.level, law.velocity, law.acceleration) == pytest.approx((0.0, 5.0, 40.0), rel=1e-9)
@@ -149,9 +147,9 @@ def test_settling_counts() -> None:
 
 def test_a_step_is_followed_within_the_actuators_limits() -> None:
     ship = nomoto()
-    loop, dt = autopilot(ship), 0.02
+    loop, dt = autopilot(ship), 0.01
     limits = ActuatorLimits(5.0 * DEGREE, 2.0 * DEGREE)
-    output, rudder = simulate_tracking(ship, loop, loop.gain_values, limits, dt, np.full(6000, 0.7))
+    output, rudder = simulate_tracking(ship, loop, loop.gain_values, limits, dt, np.full(12_000, 0.7))
     assert np.abs(rudder).max() == pytest.approx(5.0 * DEGREE, rel=1e-9)
     assert np.abs(np.diff(rudder)).max() == pytest.approx(2.0 * DEGREE * dt, rel=1e-9)
     assert output[-1] == pytest.approx(0.7, rel=0.01)
@@ -241,7 +239,7 @@ def test_speed_and_pitch_follow_a_demand() -> None:
     craft = ModelFile(model_named("waterjet"), approach={"v_j": 1.866})
     ship = trim_ship(craft, output="u", actuator="v_j")
     plant, disturbance = plant_and_disturbance(ship)
-    loop = speed_loop(plant, disturbance, (Block("steering gear", (1.0,), (1.0, 1.0)),), actuator="v_j")
+    loop = sampled(speed_loop(plant, disturbance, (Block("steering gear", (1.0,), (1.0, 1.0)),), actuator="v_j"))
     task = task_of(loop, ship, Demand(0.2, 0.02, 20.0, 400.0), ControllerConstraints(limit=1.0, rate=0.2))
     change, _ = simulate_manoeuvres(task, loop, "chosen", loop.gain_values, 0)
     assert change.name == "speed change"
@@ -250,7 +248,7 @@ def test_speed_and_pitch_follow_a_demand() -> None:
     added = {"a33": 2500.0, "a55": 7000.0, "a35": 0.0, "a53": 0.0, "b33": 9e3, "b55": 2.4e4, "b35": 0.0, "b53": 0.0}
     boat = trim_ship(ModelFile(model_named("heave_pitch").with_values(hull | added)), output="theta",
                   actuator="delta_f1", disturbance="M5")  # fmt: skip
-    fins = pitch_loop(*plant_and_disturbance(boat), (Block("servo", (1.0,), (0.05, 1.0)),))
+    fins = sampled(pitch_loop(*plant_and_disturbance(boat), (Block("servo", (1.0,), (0.05, 1.0)),)))
     fins = fins.with_gains(np.array([0.5, 2.0, 1.0]) * [1.0, fins.gains["KI"].upper / 4.0, fins.gains["KD"].value])
     made, _ = simulate_manoeuvres(
         task_of(fins, boat, Demand(0.02, 0.05, 2.0, 60.0), ControllerConstraints()), fins, "x", fins.gain_values, 0

@@ -11,6 +11,7 @@ from tests.control.loop_files import AUTOPILOT, model_file, nomoto, write_loop_f
 from seatrial.control.loopfile.load import tuning_task
 from seatrial.control.simulation import SIGNALS, correlation_time, simulate_disturbances
 from seatrial.control.task import TuningTask
+from seatrial.physics.loops import Sampling
 
 SEAS = """
 [[seas]]
@@ -32,7 +33,11 @@ def task(tmp_path: Path) -> TuningTask:
 
 
 def test_simulations_without_limits_have_the_predicted_rms(task: TuningTask) -> None:
-    """From the bow, from the quarter, where the ship overtakes waves, and in a slow disturbance."""
+    """From the bow, from the quarter, where the ship overtakes waves, and in a slow disturbance.
+
+    Rates are those from sample to sample, which are (omega T)^2 / 24 less.
+    """
+    task = replace(task, loop=replace(task.loop, sampling=Sampling(0.25)))
     made = simulate_disturbances(task, task.loop, task.loop.gain_values, seed=0)
     assert [one.disturbance for one in made] == [met.description for met in task.disturbances]
     for one in made:

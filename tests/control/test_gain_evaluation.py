@@ -24,7 +24,7 @@ def _differences(of, gains, step=1e-5):
 def test_gradients_are_those_of_the_numbers(preamplifier, objectives):
     one = gain_evaluator(fin_task(preamplifier, objectives))
     gains = np.array([5.0, 3.0, 20.0])
-    slopes, excess = one.slopes(gains)
+    slopes, excess = one.point(gains).slopes
     np.testing.assert_allclose(slopes, _differences(lambda k: one.evaluate(k[None]).objectives[0], gains), rtol=2e-6)
     np.testing.assert_allclose(
         excess, _differences(lambda k: one.evaluate(k[None]).excess[0], gains), rtol=2e-6, atol=1e-9
@@ -46,7 +46,7 @@ def test_gradient_over_several_seas_and_speeds():
     both = replace(beam, disturbances=(*beam.disturbances, *faster), effectiveness=Effectiveness.SPEED_SQUARED)
     one, gains = gain_evaluator(both), np.array([8.0, 3.0, 30.0])
     np.testing.assert_allclose(
-        one.slopes(gains)[0], _differences(lambda k: one.evaluate(k[None]).objectives[0], gains), rtol=2e-6
+        one.point(gains).slopes[0], _differences(lambda k: one.evaluate(k[None]).objectives[0], gains), rtol=2e-6
     )
 
 
@@ -60,7 +60,7 @@ def test_value_and_slopes_of_one_set_of_gains_rest_on_one_evaluation_of_the_loop
     monkeypatch.setattr(Performance, "evaluate", counted)
     one, gains = gain_evaluator(fin_task()), np.array([5.0, 3.0, 20.0])
     one.evaluate(gains[None])
-    one.slopes(gains)
+    _ = one.point(gains).slopes
     assert calls == list(one.performances)
 
 
@@ -90,11 +90,11 @@ def test_effectiveness_goes_with_the_square_of_the_speed():
 @pytest.mark.parametrize("gains", [PUBLISHED, np.array([16.0, 150.0, 1.0])])
 def test_each_excess_and_its_slopes_are_those_of_the_numbers(gains):
     one = gain_evaluator(fin_task())
-    values, slopes = one.excess_of_each(gains)
+    values, slopes = one.point(gains).excess_of_each
     np.testing.assert_allclose(
         [values[:3].max(), *values[3:]], one.evaluate(gains[None]).excess[0], rtol=1e-9, atol=1e-9
     )
-    differences = _differences(lambda k: one.excess_of_each(k)[0], gains)
+    differences = _differences(lambda k: one.point(k).excess_of_each[0], gains)
     np.testing.assert_allclose(slopes[values > -1.0], differences[values > -1.0], rtol=2e-5, atol=1e-8)
 
 

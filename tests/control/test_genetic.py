@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.control.fin_tasks import LIMITS, PAPER_OBJECTIVES, fin_task
+from tests.control.fin_tasks import LIMITS, PAPER_OBJECTIVES
+from tests.control.fin_tasks import sampled_fin_task as fin_task
 
 from seatrial.control import (
     GeneticTuning,

@@ -101,7 +101,7 @@ def test_without_control_the_motion_is_the_hull_s_own(task: TuningTask) -> None:
 
 def test_gradients_equal_differences(tmp_path: Path) -> None:
     evaluator = gain_evaluator(ride(tmp_path, (OBJECTIVES, ALL_OBJECTIVES)))
-    slopes, _ = evaluator.slopes(GAINS)
+    slopes, _ = evaluator.point(GAINS).slopes
     for i, step in enumerate(np.diag(1e-5 * GAINS)):
         up, down = evaluator.objective_values(np.array([GAINS + step, GAINS - step]))
         np.testing.assert_allclose(slopes[:, i], (up - down) / (2.0 * step[i]), rtol=1e-5)

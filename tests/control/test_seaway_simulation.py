@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy import stats
-from tests.control.fin_tasks import HULL, KNOT, PUBLISHED, fin_task
+from tests.control.fin_tasks import HULL, KNOT, PUBLISHED
+from tests.control.fin_tasks import sampled_fin_task as fin_task
 
 from seatrial.control.simulation import (
     compare_pairwise,
@@ -100,9 +101,9 @@ def test_linear_runs_have_the_variance_of_the_spectrum(paper: SeawaySimulation) 
 
 
 def test_the_published_gains_lose_to_limits_and_more_to_stall(paper: SeawaySimulation) -> None:
-    """About 76 % of the roll linear, 74 % within 22 deg and 25 deg/s, 67 % with stall at 18 deg."""
+    """About 76 % of the roll linear, 74 % within 22 deg and 25 deg/s, 67 % with stall at 18 deg; sampled."""
     means = [100.0 * float(np.mean(column)) for column in (paper.linear, paper.limited, paper.stalled)]
-    assert means == pytest.approx([76.1, 74.5, 67.3], abs=0.5)
+    assert means == pytest.approx([76.0, 74.3, 66.7], abs=0.5)
     assert paper.saturation_loss == pytest.approx(0.019, abs=0.005)
     assert np.all(paper.linear > paper.limited)
     assert np.all(paper.limited > paper.stalled)

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.control.fin_tasks import KNOT, LIMITS, PUBLISHED, QUICK, fin_task
+from tests.control.fin_tasks import KNOT, LIMITS, PUBLISHED, QUICK
+from tests.control.fin_tasks import sampled_fin_task as fin_task
 from tests.control.loop_files import AUTOPILOT, PATROL_BOAT, model_file, write_loop_file
 
 from seatrial.control import tune as module
@@ -65,7 +66,7 @@ def test_front_covers_the_grid_and_the_rival_is_shown(made):
     assert made.front.hypervolume >= 0.97
     assert [front.name for front in made.extended_fronts] == [five_gain_loop(fin_task().loop).name]
     assert made.baselines[0].name == "as published"
-    assert made.baselines[0].Ms == pytest.approx(1.32, abs=0.01)
+    assert made.baselines[0].Ms == pytest.approx(1.36, abs=0.01)  # 1.32 in continuous time
 
 
 def test_five_gains_roll_a_third_less_at_equal_fin_rate(made):

@@ -36,7 +36,7 @@ from seatrial.physics.loops.objective import ENERGY
 MAX_SATURATION_LOSS = 0.03  # reduction lost to the actuator's limits, as a share of one; chosen
 # seas after which candidates are left out, all in the end, and how long each is [s]: many short ones, as each has an
 # actuator of its own; and how far their seeds lie from those of the final simulations; chosen
-_HEATS, _SEA_SECONDS, _SELECTION_SEED_OFFSET = (6, 20), 250.0, 100_000
+_HEATS, _SEA_SECONDS, _SELECTION_SEED_OFFSET = (3, 6, 20), 250.0, 100_000
 # reductions that differ less count as equal; share of the permitted loss used in the selection; chosen
 _EQUAL_REDUCTION, _LARGEST_LOSS = 0.003, 0.85 * MAX_SATURATION_LOSS
 _ABOUT = 7  # rates between the neighbours of the best one, that one among them; chosen
@@ -128,12 +128,14 @@ class _SelectionSeas:
     def raced(self, candidates: Sequence[_Candidate]) -> list[_Candidate]:
         """Return those in all seas among which the best one of all is.
 
-        After the first heat those that surely reduce less than the best are left out (Maron & Moore 1994, Hoeffding
-        races, Adv. Neural Inf. Process. Syst. 6; here by paired differences). Of the others the one that reduces most
-        meets all seas, then those that come before it, until one reduces as much.
+        After each heat those that surely reduce less than the best are left out (Maron & Moore 1994, Hoeffding
+        races, Adv. Neural Inf. Process. Syst. 6; here by paired differences). Of those left before the last heat the
+        one that reduces most meets all seas, then those that come before it, until one reduces as much.
         """
-        few, others = self._heats
-        equals = _equals([_after_heat(candidate, few) for candidate in candidates])
+        *few, others = self._heats
+        equals = list(candidates)
+        for heat in few:
+            equals = _equals([_after_heat(candidate, heat) for candidate in equals])
         most = _first_kept(equals, _reduction_first)
         tried = [_after_heat(most, others)]
         for candidate in sorted(equals, key=_preference):
@@ -225,7 +227,8 @@ def _gains_with_margin(judge: GainEvaluator, tried: list[_Candidate], like: _Can
     evaluator = replace(judge.within(within), objectives=(task.motion,))
     named = [dict(zip(one.evaluator.loop.gains.names, one.gains.tolist(), strict=True)) for one in tried]
     known = np.array([[gains.get(name, 0.0) for name in judge.loop.gains.names] for gains in named])
-    return least_output_gains(evaluator, np.concatenate([spread_gains(evaluator, seed), known]))
+    near = [known[i] for i, one in enumerate(tried) if one is like]
+    return least_output_gains(evaluator, np.concatenate([spread_gains(evaluator, seed), known]), near)
 
 
 def _best_candidate(candidates: list[_Candidate]) -> _Candidate:

@@ -29,9 +29,9 @@ from seatrial.core.values import (
     InputError,
     frozen,
 )
-from seatrial.physics.loops import Block, Sampling, TransferLoop, margins, reversals_per_hour
+from seatrial.physics.loops import Block, TransferLoop, margins, reversals_per_hour
 from seatrial.physics.loops.autopilot import START, FeedForward, acceleration_feed_forward, working_frequency
-from seatrial.physics.loops.discrete import default_sample_time, difference_equation, holding_terms
+from seatrial.physics.loops.discrete import difference_equation, holding_terms
 from seatrial.physics.loops.performance import frequency_band
 from seatrial.physics.simulate.closed_loop import (
     REFERENCE,
@@ -218,13 +218,10 @@ def _programmes(task: TuningTask, loop: TransferLoop, gains: Array, demand: Dema
 
 
 def _clock(loop: TransferLoop, demand: Demand) -> tuple[float, int]:
-    """Return the step [s] of a simulation, and how many of them stand between two samples of the controller.
-
-    Short for everything that moves; one in continuous time is sampled at every step.
-    """
+    """Return the step [s] of a simulation, short for everything that moves, and how many of them make a sample."""
     count = int(np.clip(math.ceil(demand.duration * fastest_motion(loop) / _STEP_SHARE), _FEWEST_STEPS, _MOST_STEPS))
-    dt = simulation_step(loop.sampling, demand.duration / count)
-    return dt, 1 if loop.sampling is None else steps_a_sample(loop.sampling, dt)
+    dt = simulation_step(loop.required_sampling, demand.duration / count)
+    return dt, steps_a_sample(loop.required_sampling, dt)
 
 
 def feed_forward(loop: TransferLoop, demand: Demand) -> FeedForward:
@@ -386,11 +383,11 @@ def violated_restrictions(evaluator: GainEvaluator, evaluation: GainEvaluation) 
 def discrete_controller(task: TuningTask, loop: TransferLoop) -> DiscreteController | None:
     """Return terms and filters of a loop with its gains as difference equations, and the reference that it follows.
 
-    None where the loop is unstable. One in continuous time is sampled as it allows.
+    None where the loop is unstable.
     """
     if not margins(loop).is_stable:
         return None
-    sampling = loop.sampling or Sampling(default_sample_time(loop))
+    sampling = loop.required_sampling
     holds, sign = holding_terms(loop)
 
     def block(role: str, one: Block, gain: str = "", *, is_held: bool = False) -> DiscreteBlock:

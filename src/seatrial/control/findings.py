@@ -149,12 +149,11 @@ def _simulation_findings(
 def _noise_findings(evaluator: GainEvaluator, chosen: Controller) -> list[Finding]:
     """Return what the sensor's errors alone make of the actuator, and blocks that ring at the samples."""
     loop, found = evaluator.loop.with_gains(np.array([*chosen.gains.values()])), []
-    if loop.sampling is None:
-        return found
-    if ringing := ringing_blocks(loop, loop.sampling.sample_s):
-        found.append(_warning("rings", f"at samples of {loop.sampling.sample_s:g} s {', '.join(ringing)} rings: by "
+    sampling = loop.required_sampling
+    if ringing := ringing_blocks(loop, sampling.sample_s):
+        found.append(_warning("rings", f"at samples of {sampling.sample_s:g} s {', '.join(ringing)} rings: by "
                               "Tustin's rule its output changes sign at every sample"))  # fmt: skip
-    if loop.sampling.noise_variance and math.isfinite(chosen.Ms):
+    if sampling.noise_variance and math.isfinite(chosen.Ms):
         _, rms_rate = calm_actuator(loop)
         share = rms_rate / evaluator.task.constraints.rate
         if share > MAX_CALM_RATE:

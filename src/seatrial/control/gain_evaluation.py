@@ -69,13 +69,14 @@ class GainEvaluator:
         return (*self.objectives, OUTPUT, ACTUATOR, ACTUATOR_RATE, self.task.motion)
 
     @cached_property
-    def _variance_indices(self) -> list[list[int]]:
+    def variance_indices(self) -> list[list[int]]:
+        """Rows of each objective's variances, those of output, actuator, its rate and the motion that counts last."""
         return distinct_variances(self._judged)[1]
 
     @cached_property
-    def _own_rows(self) -> list[int]:
+    def own_rows(self) -> list[int]:
         """Rows of output, actuator, its rate and the motion that counts."""
-        return [at[0] for at in self._variance_indices[-4:]]
+        return [at[0] for at in self.variance_indices[-4:]]
 
     @cached_property
     def performances(self) -> tuple[Performance, ...]:
@@ -88,14 +89,14 @@ class GainEvaluator:
         return replace(self, task=replace(self.task, constraints=constraints))
 
     @cached_property
-    def _has_own_Ms(self) -> tuple[bool, ...]:
+    def has_own_Ms(self) -> tuple[bool, ...]:
         """Whether each performance's open loop is the first of its kind: Ms is the same where the plant is."""
         plants = [p.loop.plant for p in self.performances]
         return tuple(plant not in plants[:i] for i, plant in enumerate(plants))
 
-    def _of_each(self, gains: Array) -> list[LoopEvaluation]:
+    def of_each(self, gains: Array) -> list[LoopEvaluation]:
         """Return the loops with the gains (n, g) in each disturbance; Ms is zero where another's is the same."""
-        pairs = zip(self.performances, self._has_own_Ms, strict=True)
+        pairs = zip(self.performances, self.has_own_Ms, strict=True)
         return [performance.evaluate(gains, with_Ms=own) for performance, own in pairs]
 
     @cached_property
@@ -106,7 +107,7 @@ class GainEvaluator:
         """
         if self.task.demand is not None:
             return 1.0
-        place = self._own_rows[3]
+        place = self.own_rows[3]
         return float(np.mean([p.uncontrolled_variances[place] for p in self.performances]))
 
     @cached_property
@@ -119,28 +120,21 @@ class GainEvaluator:
     def evaluate(self, gains: Array) -> GainEvaluation:
         """Return all of the gains (n, g)."""
         if len(gains) != 1:
-            return self._evaluated(self._of_each(gains))
-        return self._remembered_evaluation(_bytes(gains))
+            return self.evaluated(self.of_each(gains))
+        return self.point(gains[0]).judged
+
+    def point(self, gains: Array) -> "EvaluatedPoint":
+        """Return one set of gains (g,); searches return to the last few for value, slopes and limits."""
+        return self._remembered_point(np.asarray(gains, dtype=np.float64).tobytes())
 
     @cached_property
-    def _remembered_evaluation(self) -> Callable[[bytes], GainEvaluation]:
-        """Evaluate one set of gains, given as bytes; searches return to the last few for value, slope and limits."""
-        return lru_cache(maxsize=_REMEMBERED)(lambda gains: self._evaluated(self._remembered_loops(gains)))
+    def _remembered_point(self) -> Callable[[bytes], "EvaluatedPoint"]:
+        return lru_cache(maxsize=_REMEMBERED)(lambda gains: EvaluatedPoint(self, np.frombuffer(gains).copy()))
 
-    @cached_property
-    def _remembered_loops(self) -> Callable[[bytes], list[LoopEvaluation]]:
-        """Return the loops with one set of gains, given as bytes, which its evaluation and its slopes rest on."""
-        return lru_cache(maxsize=_REMEMBERED)(lambda gains: self._of_each(np.frombuffer(gains)[None].copy()))
-
-    @cached_property
-    def _remembered_slopes(self) -> Callable[[bytes], tuple[Array, Array]]:
-        """Return `slopes` at one set of gains, given as bytes."""
-        return lru_cache(maxsize=_REMEMBERED)(lambda gains: self._slopes_at(np.frombuffer(gains).copy()))
-
-    def _evaluated(self, loops: list[LoopEvaluation]) -> GainEvaluation:
+    def evaluated(self, loops: list[LoopEvaluation]) -> GainEvaluation:
         """Return the judgement of loops, those of each disturbance."""
         made = np.array([e.variances for e in loops])
-        variances = made[:, :, self._own_rows].swapaxes(0, 1)
+        variances = made[:, :, self.own_rows].swapaxes(0, 1)
         peak = np.array([e.Ms for e in loops]).max(axis=0)
         excess = np.empty((len(peak), 3))
         excess[:, 0] = peak / self.task.constraints.Ms - 1.0
@@ -155,54 +149,70 @@ class GainEvaluator:
     def _mean_objectives(self, variances: Array) -> Array:
         """Return objectives (n, m) of the variances that each disturbance causes, (s, n, r)."""
         means = np.empty((variances.shape[1], len(self.objectives)))
-        for i, (objective, at) in enumerate(zip(self.objectives, self._variance_indices, strict=False)):
+        for i, (objective, at) in enumerate(zip(self.objectives, self.variance_indices, strict=False)):
             values = objective.value(variances[:, :, at].reshape(-1, len(at)))
             means[:, i] = values.reshape(len(variances), -1).mean(axis=0)
         return means
 
-    def slopes(self, gains: Array) -> tuple[Array, Array]:
-        """Return d objectives / d gains (m, g) and d excess / d gains (3, g) at one stable point (g,)."""
-        return self._remembered_slopes(_bytes(gains))
-
-    def _slopes_at(self, gains: Array) -> tuple[Array, Array]:
-        evaluated = self._remembered_loops(_bytes(gains))
-        made = [one.variances for one in evaluated]
-        rows = [p.variance_gradients(gains) for p in self.performances]
-        objectives = np.array([
-            np.mean([objective.gradient(v[:, at])[0] @ row[at] for v, row in zip(made, rows, strict=True)], axis=0)
-            for objective, at in zip(self.objectives, self._variance_indices, strict=False)
-        ])  # fmt: skip
-        excess = np.zeros((3, len(gains)))
-        frailest = self.performances[int(np.argmax([one.Ms[0] for one in evaluated]))]
-        excess[0] = frailest.sensitivity_peaks(gains)[1][0] / self.task.constraints.Ms
-        for i, place in enumerate(self._own_rows[1:3]):
-            worst = int(np.argmax([v[0, place] for v in made]))
-            excess[1 + i] = rows[worst][place] / self.allowed_variances[i]
-        return objectives, excess
-
     @property
     def restriction_count(self) -> int:
         """Number of rows of `excess_of_each`."""
-        return PEAKS * sum(self._has_own_Ms) + 2 * len(self.performances)
+        return PEAKS * sum(self.has_own_Ms) + 2 * len(self.performances)
 
-    def excess_of_each(self, gains: Array) -> tuple[Array, Array]:
-        """Return excess (c,) and its slopes (c, g) at one stable point (g,), each smooth in the gains.
 
-        A row for each peak of |S| of each plant, then for actuator and rate in each disturbance; `evaluate` has the
+@dataclass(frozen=True, eq=False)
+class EvaluatedPoint:
+    """One set of gains (g,) judged, with slopes by the gains where the loop is stable; each is computed when asked."""
+
+    evaluator: GainEvaluator
+    gains: Array
+
+    @cached_property
+    def _loops(self) -> list[LoopEvaluation]:
+        return self.evaluator.of_each(self.gains[None])
+
+    @cached_property
+    def judged(self) -> GainEvaluation:
+        """The evaluation of the one set."""
+        return self.evaluator.evaluated(self._loops)
+
+    @cached_property
+    def _variance_slopes(self) -> list[Array]:
+        """The slopes of each disturbance's variances, (r, g)."""
+        return [p.variance_gradients(self.gains) for p in self.evaluator.performances]
+
+    @cached_property
+    def slopes(self) -> tuple[Array, Array]:
+        """d objectives / d gains (m, g) and d excess / d gains (3, g)."""
+        one, made, rows = self.evaluator, [loops.variances for loops in self._loops], self._variance_slopes
+        objectives = np.array([
+            np.mean([objective.gradient(v[:, at])[0] @ row[at] for v, row in zip(made, rows, strict=True)], axis=0)
+            for objective, at in zip(one.objectives, one.variance_indices, strict=False)
+        ])  # fmt: skip
+        excess = np.zeros((3, len(self.gains)))
+        frailest = one.performances[int(np.argmax([loops.Ms[0] for loops in self._loops]))]
+        excess[0] = frailest.sensitivity_peaks(self.gains)[1][0] / one.task.constraints.Ms
+        for i, place in enumerate(one.own_rows[1:3]):
+            worst = int(np.argmax([v[0, place] for v in made]))
+            excess[1 + i] = rows[worst][place] / one.allowed_variances[i]
+        return objectives, excess
+
+    @cached_property
+    def excess_of_each(self) -> tuple[Array, Array]:
+        """Excess (c,) and its slopes (c, g), each smooth in the gains.
+
+        A row for each peak of |S| of each plant, then for actuator and rate in each disturbance; `judged` has the
         largest of them, whose slope changes abruptly where two are equal.
         """
-        peaks = [p.sensitivity_peaks(gains) for p, own in zip(self.performances, self._has_own_Ms, strict=True) if own]
-        values = [top / self.task.constraints.Ms - 1.0 for top, _ in peaks]
-        slopes = [rows / self.task.constraints.Ms for _, rows in peaks]
-        places = self._own_rows[1:3]
-        for loops, performance in zip(self._remembered_loops(_bytes(gains)), self.performances, strict=True):
-            values.append(loops.variances[0, places] / self.allowed_variances - 1.0)
-            slopes.append(performance.variance_gradients(gains)[places] / self.allowed_variances[:, None])
+        one, most = self.evaluator, self.evaluator.task.constraints.Ms
+        pairs = zip(one.performances, one.has_own_Ms, strict=True)
+        peaks = [performance.sensitivity_peaks(self.gains) for performance, own in pairs if own]
+        values, slopes = [top / most - 1.0 for top, _ in peaks], [rows / most for _, rows in peaks]
+        places = one.own_rows[1:3]
+        for loops, rows in zip(self._loops, self._variance_slopes, strict=True):
+            values.append(loops.variances[0, places] / one.allowed_variances - 1.0)
+            slopes.append(rows[places] / one.allowed_variances[:, None])
         return np.concatenate(values), np.concatenate(slopes)
-
-
-def _bytes(gains: Array) -> bytes:
-    return np.asarray(gains, dtype=np.float64).tobytes()
 
 
 def gain_evaluator(task: TuningTask, loop: TransferLoop | None = None) -> GainEvaluator:
@@ -257,33 +267,33 @@ def refine_gains(evaluator: GainEvaluator, start: Array, ceiling: Array | None =
     count, rows = 0 if ceiling is None else len(ceiling), evaluator.restriction_count
     top = np.ones(0) if ceiling is None else np.maximum(ceiling, _TINY)
 
-    def all_gains_at(unit: Array) -> Array:
-        return all_gains(evaluator, (low + np.clip(unit, 0.0, 1.0) * width)[None])
+    def point_of(unit: Array) -> EvaluatedPoint:
+        return evaluator.point(all_gains(evaluator, (low + np.clip(unit, 0.0, 1.0) * width)[None])[0])
 
     def value(unit: Array) -> float:
-        return float(np.sum(np.log(np.clip(evaluator.evaluate(all_gains_at(unit)).objectives[0], _TINY, _HUGE))))
+        return float(np.sum(np.log(np.clip(point_of(unit).judged.objectives[0], _TINY, _HUGE))))
 
     def slope(unit: Array) -> Array:
-        made = evaluator.evaluate(all_gains_at(unit)).objectives[0]
+        point = point_of(unit)
+        made = point.judged.objectives[0]
         if not np.all(np.isfinite(made) & (made > 0.0)):
             return np.zeros(len(unit))
-        return (evaluator.slopes(all_gains_at(unit)[0])[0][:, places] / made[:, None]).sum(axis=0) * width
+        return (point.slopes[0][:, places] / made[:, None]).sum(axis=0) * width
 
     def constraint_margins(unit: Array) -> Array:
-        gains = all_gains_at(unit)
-        evaluated = evaluator.evaluate(gains)
-        left = 1.0 - np.minimum(evaluated.objectives[0, :count] / top, _LARGEST_EXCESS)
-        each = (
-            evaluator.excess_of_each(gains[0])[0] if math.isfinite(evaluated.Ms[0]) else np.full(rows, _LARGEST_EXCESS)
-        )
+        point = point_of(unit)
+        left = 1.0 - np.minimum(point.judged.objectives[0, :count] / top, _LARGEST_EXCESS)
+        is_stable = math.isfinite(point.judged.Ms[0])
+        each = point.excess_of_each[0] if is_stable else np.full(rows, _LARGEST_EXCESS)
         return np.concatenate([left, -np.minimum(each, _LARGEST_EXCESS)])
 
     def constraint_slopes(unit: Array) -> Array:
-        gains = all_gains_at(unit)
-        if not math.isfinite(evaluator.evaluate(gains).Ms[0]):
+        point = point_of(unit)
+        if not math.isfinite(point.judged.Ms[0]):
             return np.zeros((count + rows, len(unit)))
-        objectives, excess = evaluator.slopes(gains[0])[0], evaluator.excess_of_each(gains[0])[1]
-        return -np.concatenate([objectives[:count] / top[:, None], excess])[:, places] * width
+        excess = point.excess_of_each[1]
+        each = np.concatenate([point.slopes[0][:count] / top[:, None], excess]) if count else excess
+        return -each[:, places] * width
 
     found = minimize(
         value, (start - low) / width, jac=slope, bounds=[(0.0, 1.0)] * len(places), method="SLSQP",
@@ -417,11 +427,10 @@ class _LocalProblem:
     def slopes(self, unit: Array) -> tuple[Array, Array, Array]:
         """Return slopes of the objective's logarithm (f,), excess (c,) and its slopes (c, f)."""
         places, (low, high) = free_gain_bounds(self.evaluator)
-        gains = self.gains(unit)
-        value = self.evaluator.evaluate(gains[None]).objectives[0, 0]
-        excess, rows = self.evaluator.excess_of_each(gains)
-        width = high - low
-        return self.evaluator.slopes(gains)[0][0, places] * width / value, excess, rows[:, places] * width
+        point, width = self.evaluator.point(self.gains(unit)), high - low
+        excess, rows = point.excess_of_each
+        value = point.judged.objectives[0, 0]
+        return point.slopes[0][0, places] * width / value, excess, rows[:, places] * width
 
     def is_regular(self, unit: Array) -> bool:
         """Return whether the loop is stable there and the objective has a logarithm."""

@@ -143,7 +143,7 @@ def _slopes(grid: GainGrid, gains: Array) -> tuple[Array, Array, Array]:
     costs = grid.costs(gains)
     of_costs, of_limits = [], []
     for one, own, cost in zip(grid.evaluators, gains, costs, strict=True):
-        objectives, excess = one.slopes(own)
+        objectives, excess = one.point(own).slopes
         of_costs.append((0.5 / (cost * one.uncontrolled_variance)) * objectives[0, places] * own[places])
         of_limits.append(excess[:, places] * own[places])
     slopes = np.array(of_costs)

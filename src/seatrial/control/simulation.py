@@ -126,8 +126,7 @@ def _hourly_energies(task: TuningTask, run: ClosedLoop, angles: Array, U: float)
     Rates are those from step to step. Without a servo they are those from sample to sample: an actuator that follows
     an order at once would take any work.
     """
-    sampling = run.loop.sampling
-    every = 1 if sampling is None or run.loop.servo else steps_a_sample(sampling, run.dt)
+    every = 1 if run.loop.servo else steps_a_sample(run.loop.required_sampling, run.dt)
     step = every * run.dt
     drive = math.nan if task.drive is None else task.drive.hourly_energy(np.diff(angles[::every]) / step, step)
     return drive, math.nan if task.surface is None else task.surface.hourly_energy(float(np.mean(angles**2)), U)
@@ -159,8 +158,7 @@ def _trial(
 
     After the run-in; seed: of the noise.
     """
-    sampling = run.loop.sampling
-    noise = None if sampling is None else sample_noise(sampling, sea.shape[1], seed)
+    noise = sample_noise(run.loop.required_sampling, sea.shape[1], seed)
     states, angles = run.run(*_disturbed_by(run, sea, seaway, limits), noise=noise)
     first = round(RUN_IN_SECONDS / run.dt)
     return float(np.std(_motion(task, run, states, sea, seaway)[first:])), angles[first:]
@@ -385,7 +383,7 @@ def _simulate(
 
     def of_one(number: int, each: ActuatorLimits) -> tuple[Array, Array]:
         series = disturbance_realisation(met, loop, clock, number)
-        noise = None if loop.sampling is None else sample_noise(loop.sampling, clock.count, number)
+        noise = sample_noise(loop.required_sampling, clock.count, number)
         states, moved = run.run(series, each, noise=noise)
         return states[:, output], moved
 
@@ -434,10 +432,9 @@ def disturbance_clock(
     spectrum = met.exposure(loop)
     omega = spectrum.omega_e
     energy = spectrum.energy * np.abs(_response(loop, omega)) ** 2
-    poles = loop.closed_loop_poles
     stepped = loop if inner is None else inner
-    moving = poles if stepped.sampling is None else np.concatenate([stepped.plant.poles, stepped.disturbance.poles])
-    dt = simulation_step(stepped.sampling, _STEP_SHARE / float(np.abs(moving).max()))
+    fastest = float(np.abs(np.concatenate([stepped.plant.poles, stepped.disturbance.poles])).max())
+    dt = simulation_step(stepped.required_sampling, _STEP_SHARE / fastest)
     time = correlation_time(omega, energy)
     counted = time_to_know(time, SEEDS)
     first = math.ceil(_RUN_IN * time / dt)
@@ -502,12 +499,11 @@ def gauss_markov(bandwidth: float, dt: float, count: int, rng: np.random.Generat
 
 
 def actuator_rate(run: ClosedLoop, moved: Array) -> Array:
-    """Return the rate of the actuator (n,) from step to step, of a sampled controller from sample to sample.
+    """Return the rate of the actuator (n,) from sample to sample.
 
     An order that is held moves an actuator in steps, whose rate within them is that of the actuator and not the loop's.
     """
-    sampling = run.loop.sampling
-    every = 1 if sampling is None else steps_a_sample(sampling, run.dt)
+    every = steps_a_sample(run.loop.required_sampling, run.dt)
     return (moved[every:] - moved[:-every]) / (every * run.dt)
 
 

@@ -353,8 +353,8 @@ class ActuatorSpread:
 @lru_cache(maxsize=_KEPT_LOOPS)
 def _with_dead_time(loop: TransferLoop, factor: float) -> TransferLoop:
     """Return a loop with its dead time times a factor, no more than is modelled."""
-    sampling = loop.sampling
-    if sampling is None or not sampling.dead_time:
+    sampling = loop.required_sampling
+    if not sampling.dead_time:
         return loop
     dead_time = min(factor * sampling.dead_time, MOST_SAMPLES * sampling.sample_s)
     return replace(loop, sampling=replace(sampling, dead_time=dead_time))

@@ -24,6 +24,7 @@ K, T = 0.2, 8.0  # 1/s, s: of the model
 GAINS = {"KP": 1.0, "KD": 4.0}
 LIMIT = 35.0 * DEGREE  # rad
 DT, LEG_S = 0.5, 120.0  # s
+SAMPLING = Sampling(DT)
 
 
 def ship(gain: float = K, lag: float = T) -> TrimmedShip:
@@ -32,8 +33,8 @@ def ship(gain: float = K, lag: float = T) -> TrimmedShip:
     return trim_ship(ModelFile(model, np.diag(np.square(DEVIATIONS))), output="psi", actuator="delta")
 
 
-def autopilot_task(sampling: Sampling | None = None) -> TuningTask:
-    """Return the tuning of the model's autopilot, in continuous time where it does not sample."""
+def autopilot_task(sampling: Sampling = SAMPLING) -> TuningTask:
+    """Return the tuning of the model's autopilot."""
     model = ship()
     objectives = variance("output", "rad^2", LoopSignal.OUTPUT), variance("rate", "rad^2/s^2", LoopSignal.ACTUATOR, 1)
     gear = (Block("steering gear", (1.0,), (0.5, 1.0)),)
@@ -46,7 +47,7 @@ def autopilot_task(sampling: Sampling | None = None) -> TuningTask:
 
 def course_log(
     seed: int, gain: float = K, lag: float = T, weather: float = 0.01, turns: int = 4,
-    sampling: Sampling | None = None,
+    sampling: Sampling = SAMPLING,
 ) -> Record:  # fmt: skip
     """Return the log of changes to starboard and port by a ship of that gain and lag; weather: rms [rad] of rudder."""
     task, true = autopilot_task(sampling), ship(gain, lag)

@@ -9,11 +9,11 @@ from benchmarks.verification import EXAMPLE, SimulatedLog, simulated_log, verifi
 
 import seatrial as st
 from seatrial.control.loopfile.load import tuning_task
-from seatrial.control.task import SlowDisturbance, TuningTask
+from seatrial.control.task import Seaway, SlowDisturbance, TuningTask
 from seatrial.control.verification.stabiliser import AS_THEY_ARE, BY_MODEL, BY_WAVES, legs_on_and_off, natural_period
 from seatrial.core.results.verification import Verification
 from seatrial.core.values import Array, Channel, InputError, Record, RecordKind, frozen
-from seatrial.physics.loops import Block
+from seatrial.physics.loops import Block, HullFactor
 from seatrial.physics.loops.structures import PUBLISHED_GAINS, fin_loop
 
 DT, LOOP = 0.5, fin_loop()
@@ -117,6 +117,16 @@ def test_fins_that_do_less_are_named(task: TuningTask) -> None:
     assert correction.lower < 0.8 * 0.256
     assert "model-moved" in {f.code for f in result.findings}
     assert result.reductions[0].lower < log.reduction < result.reductions[0].upper
+
+
+def test_waves_that_act_otherwise_than_assumed_are_named_and_leave_the_fins_alone(task: TuningTask) -> None:
+    """A hull five times as wide: short waves hardly roll it, which K_alpha took for its own before."""
+    sea = next(met for met in task.disturbances if isinstance(met, Seaway))
+    other = replace(task, disturbances=(replace(sea, effect=HullFactor(100.0, 50.0, 10.0)),))
+    result = verified(task, simulated_log(other, np.zeros(3), 5))
+    fins = result.corrections[0]
+    assert fins.lower < fins.model < fins.upper
+    assert any(f.message.startswith("waves move 'phi' otherwise") for f in result.findings)
 
 
 def test_recorded_waves_give_the_reduction_by_their_spectra(task: TuningTask, log: SimulatedLog) -> None:

@@ -69,7 +69,7 @@ def test_variances_equal_the_sums_and_unstable_loops_are_infinite(rng: np.random
     k = np.vstack([rng.random((9, 2)) + 0.1, [-0.5, 1.0]])
     d, n = np.array([1.0, 0.0, 0.0]), np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     peak, out = np.zeros(10), np.empty((10, 4))
-    evaluate_loops(k, d, n, re, im, on_s, on_t, on_both, heard, EMPTY, EMPTY, peak, out)
+    evaluate_loops(k, d, n, np.zeros(10, np.int64), re, im, on_s, on_t, on_both, heard, EMPTY, EMPTY, peak, out)
     L = k @ (re + 1j * im)
     S = np.abs(1.0 / (1.0 + L)) ** 2
     T = np.abs(L) ** 2 * S
@@ -92,6 +92,7 @@ def test_the_peak_of_a_parabola_is_exact_and_of_no_loop_one() -> None:
         np.array([[1.0], [0.0]]),
         d,
         n,
+        np.zeros(2, np.int64),
         one,
         one,
         no_rows,

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from seatrial.core.values import Array, Parameter, Parameters
-from seatrial.physics.loops import Block, Term, TransferLoop
+from seatrial.physics.loops import Block, Sampling, Term, TransferLoop
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.simulate.closed_loop import ActuatorLimits, ClosedLoop
 from seatrial.physics.simulate.craft_control import LineOfSight, PlannedTrack, TrackRun, follow_track
@@ -22,14 +22,15 @@ def heading(dt: float, start: Array, current: float = 0.0) -> ClosedLoop:
     gains = Parameters(tuple(Parameter(name, 1.0, "1", 0.0, 100.0, free=True) for name in ("KP", "KD")))
     terms = (Term("KP", Block("proportional")), Term("KD", Block("derivative", (1.0, 0.0), (TAU, 1.0))))
     plant = Block("rudder to heading", (K,), (T, 1.0, 0.0))
-    loop = TransferLoop("heading", (), terms, (), (), plant, plant, gains, "psi", "delta", "delta")
+    signals, sampling = ("psi", "delta", "delta"), Sampling(dt)
+    loop = TransferLoop("heading", (), terms, (), (), plant, plant, gains, *signals, sampling=sampling)
     model = nomoto().with_values({"K": K, "T": T, "U": U, "current_east": current})
     return ClosedLoop(model, loop, np.array([KP, KD]), dt, "delta", "", "psi", start)
 
 
 def follow(guidance: LineOfSight, duration: float, r: float = 0.0, current: float = 0.0) -> TrackRun:
     """From the track, at a yaw rate."""
-    dt, names = 0.02, nomoto().states
+    dt, names = 0.005, nomoto().states
     start = np.array([{"r": r}.get(name, 0.0) for name in names])
     return follow_track(heading(dt, start, current), guidance, np.zeros(round(duration / dt) + 1))
 

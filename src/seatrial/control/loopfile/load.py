@@ -189,7 +189,7 @@ def _task_from_tables(file: LoopFile, plant: LoopPlant, home: Path) -> TuningTas
             for i, table in enumerate(file.extended_structures, start=1)
         ),
         schedule_grid=file.schedule,
-        simulation=_simulation_settings(file.simulation, len(file.seas), demand, loop.sampling),
+        simulation=_simulation_settings(file.simulation, len(file.seas), demand, loop.required_sampling),
         trimmed_ship=plant.trimmed_ship,
         demand=demand,
         genetic=file.genetic,
@@ -314,7 +314,7 @@ def _sampling(file: LoopFile, plant: LoopPlant, loop: TransferLoop) -> Sampling:
 
 
 def _simulation_settings(
-    table: SimulationTable | None, seas: int, demand: Demand | None, sampling: Sampling | None
+    table: SimulationTable | None, seas: int, demand: Demand | None, sampling: Sampling
 ) -> SimulationSettings | None:
     """Return the default for a stabiliser in a sea; None where a demand is followed or no seeds are given.
 

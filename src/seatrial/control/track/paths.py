@@ -188,7 +188,7 @@ class CornerTrial:
     def _step(self) -> float:
         loop = self.heading.loop
         longest = max(_STEP_SHARE / fastest_motion(loop), (_BEFORE + _AFTER) * self._time / _MOST_STEPS)
-        return simulation_step(loop.sampling, longest)
+        return simulation_step(loop.required_sampling, longest)
 
     def _run(self, ship: TrimmedShip, track: PlannedTrack) -> TrackRun:
         """Return the run of a craft that a steady current sets towards the outside of the turn."""

@@ -245,8 +245,8 @@ class _OrderedRun:
     def of_change(cls, task: TuningTask, loop: TransferLoop, change: LoggedChange) -> "_OrderedRun":
         """Return the change as it was ordered, through the reference filter where the order jumped."""
         loop, demand = _without_noise(loop), task.required_demand
-        dt = simulation_step(loop.sampling, min(change.dt, _STEP_SHARE / fastest_motion(loop)))
-        every = 1 if loop.sampling is None else steps_a_sample(loop.sampling, dt)
+        dt = simulation_step(loop.required_sampling, min(change.dt, _STEP_SHARE / fastest_motion(loop)))
+        every = steps_a_sample(loop.required_sampling, dt)
         time = dt * np.arange(math.ceil(change.time[-1] / dt) + 1)
         sample_time = time[::every]
         if change.is_step:
@@ -387,9 +387,7 @@ def _answers(task: TuningTask, ships: Sequence[TrimmedShip], loop: TransferLoop,
 
 def _without_noise(loop: TransferLoop) -> TransferLoop:
     """Return the loop with a sensor without errors: what those of the log do is part of its weather."""
-    if loop.sampling is None:
-        return loop
-    return replace(loop, sampling=replace(loop.sampling, noise=0.0, resolution=0.0))
+    return replace(loop, sampling=replace(loop.required_sampling, noise=0.0, resolution=0.0))
 
 
 def _in_weather(answer: _Answer, weather: Sequence[Array], rng: np.random.Generator) -> _Answer:

@@ -176,7 +176,7 @@ def mean_moments(moments: Sequence[LoopMoments]) -> LoopMoments:
 
 
 def predicted_moments(loop: TransferLoop, sea: EncounteredSea, unknowns: Array) -> LoopMoments:
-    """Return the moments of a loop at its gains in a sea of these unknowns (3,)."""
+    """Return the moments of a loop at its gains in a sea of these unknowns (3 + j,)."""
     omega = sea.omega_e
     free = np.abs(loop.disturbance.frequency_response(omega)) ** 2 * sea.disturbance_energy(unknowns)
     controller = loop.gain_values @ loop.controller_terms(omega)
@@ -250,6 +250,13 @@ _STRONG = 0.03  # of the output's largest density, down to which the sea is soug
 # standard deviations of the logarithms of height and peak period from one leg to the next: legs follow one another
 # within an hour; chosen
 SEA_CHANGE = (0.1, 0.05)
+# logarithms of frequencies over the natural one at which what excites the roll may depart from spectrum and effective
+# slope as assumed, how far apart departures have little in common, and standard deviations of the logarithm of energy,
+# of which the log's evidence takes one; chosen
+_DEPARTURES, _DEPARTURE_LENGTH, _DEVIATIONS = np.linspace(-1.2, 1.2, 13), 0.5, (0.1, 0.3, 1.0)
+# standard deviation of a coefficient or of the actuator's effect of a ship that may have changed, as a share of it: a
+# prior so wide that where the log knows it to 5 % it draws the estimate by no more than 1 % of the difference; chosen
+OTHER_DAY = 0.5
 _DAMPING_DEVIATION = 0.3  # of the logarithm of the damping before the log: what decay tests scatter by; chosen
 _WAVE_COLUMN = 2  # of a leg's values, where waves were recorded
 _LEAST_COHERENCE = 0.6  # of what the actuator did with what the gains order; chosen
@@ -271,7 +278,7 @@ class _Leg:
     waves: WaveLeg
 
     def predicted(self, sea: Array) -> LoopMoments:
-        """Return the moments in a sea of these unknowns (3,)."""
+        """Return the moments in a sea of these unknowns (3 + j,)."""
         return predicted_moments(self.loop, self.waves.sea, sea)
 
     def logged_moments(self, mean_products: Complex, ship: Array) -> LoopMoments:
@@ -295,6 +302,17 @@ def prior_deviations(task: TuningTask) -> Array:
     return np.array([task.uncertainty.gain, task.uncertainty.time, _DAMPING_DEVIATION])
 
 
+def departure_frequencies(loop: TransferLoop) -> Array:
+    """Return the encounter frequencies [rad/s] at which the excitation may depart from the assumed one, (j,)."""
+    return np.asarray(2.0 * math.pi / natural_period(loop) * np.exp(_DEPARTURES))
+
+
+def departure_covariance(deviation: float) -> Array:
+    """Return the covariance of the departures of the roll's excitation from the assumed one before the log, (j, j)."""
+    apart = np.abs(_DEPARTURES[:, None] - _DEPARTURES) / _DEPARTURE_LENGTH
+    return np.asarray(deviation**2 * np.exp(-apart))
+
+
 def verify_stabiliser(task: TuningTask, gains: Array, records: Sequence[Record]) -> StabiliserLog:
     """Return what the records show of a stabiliser with the gains (g,).
 
@@ -309,7 +327,9 @@ def verify_stabiliser(task: TuningTask, gains: Array, records: Sequence[Record])
         raise InputError(f"the loop on '{task.loop.output}' is not verified in waves; that of roll is")
     loop = task.loop.with_gains(gains)
     legs = [_prepared(task, leg, loop, seaway) for leg in legs_on_and_off(records, loop, task.U)]
-    fit = fit_legs([leg.waves for leg in legs], LegPriors(prior_deviations(task), np.array(SEA_CHANGE)))
+    ship, waves = np.hypot(prior_deviations(task), [OTHER_DAY, 0.0, 0.0]), [leg.waves for leg in legs]
+    priors = (LegPriors(ship, np.array(SEA_CHANGE), departure_covariance(deviation)) for deviation in _DEVIATIONS)
+    fit = max((fit_legs(waves, prior) for prior in priors), key=lambda fit: fit.evidence)
     verified = tuple(_verified_leg(leg, fit, k) for k, leg in enumerate(legs))
     quantities = _quantities(legs, fit)
     return StabiliserLog(verified, quantities, _reductions(legs, quantities[0]), fit)
@@ -321,7 +341,7 @@ def _prepared(task: TuningTask, leg: LoggedLeg, loop: TransferLoop, seaway: Seaw
         _LOWEST * 2.0 * math.pi / period, _HIGHEST * 2.0 * math.pi / period
     )
     strong = spectra.strong_band(0, _STRONG)
-    sea = encountered_sea(strong.omega, leg.U, seaway.beta, seaway.effect)
+    sea = encountered_sea(strong.omega, leg.U, seaway.beta, seaway.effect, departure_frequencies(loop))
     expected = 2.0 * math.pi / seaway.spectrum.modal_frequency
     return _Leg(leg, at_speed, spectra, WaveLeg(ObservedLeg(strong, at_speed), sea, expected))
 
@@ -332,7 +352,7 @@ def _verified_leg(leg: _Leg, fit: LegFit, place: int) -> VerifiedLeg:
     Raises:
         InputError: it did not.
     """
-    (height, period, _), (height_sd, period_sd, _) = fit.seas[place], fit.sea_deviations(place)
+    (height, period), (height_sd, period_sd) = fit.seas[place, :2], fit.sea_deviations(place)[:2]
     heights, periods = (_log_normal_interval(*pair) for pair in ((height, height_sd), (period, period_sd)))
     mean, logged = products(leg.spectra).mean(axis=0), leg.logged
     moments = leg.logged_moments(mean, fit.ship)

@@ -8,7 +8,13 @@ from scipy.special import chdtri, ndtri
 
 from seatrial.control.task import TrimmedShip, TuningTask
 from seatrial.control.verification.course_changes import GainTest, verify_changes
-from seatrial.control.verification.stabiliser import StabiliserLog, prior_deviations, verify_stabiliser
+from seatrial.control.verification.stabiliser import (
+    OTHER_DAY,
+    StabiliserLog,
+    departure_frequencies,
+    prior_deviations,
+    verify_stabiliser,
+)
 from seatrial.core.equations import Model
 from seatrial.core.results.coefficients import Coefficient
 from seatrial.core.results.fit import Fit
@@ -64,9 +70,6 @@ def _correction(
 # The model behind a plant estimated anew from the log of its trial, with its covariance as what was known before.
 
 _SOURCE = "the model that was tuned on"
-# standard deviation of a coefficient of a ship that may have changed, as a share of it: a prior so wide that where the
-# log knows a coefficient to 5 % it draws the estimate by no more than 1 % of the difference; chosen
-_OTHER_DAY = 0.5
 _CHANCE = 0.01  # share of unchanged ships of which some coefficient is blamed; chosen
 
 
@@ -83,7 +86,7 @@ def refitted_coefficients(ship: TrimmedShip, records: Sequence[Record], length: 
     if ship.covariance.shape != (len(names), len(names)) or not names:
         raise InputError(f"model '{model.name}' states no covariance, which is the prior of an estimate from the log")
     values = np.array([p.value for p in model.parameters.free])
-    covariance = ship.covariance + np.diag((_OTHER_DAY * values) ** 2)
+    covariance = ship.covariance + np.diag((OTHER_DAY * values) ** 2)
     deviations = np.sqrt(np.diag(covariance))
     priors = {
         p.name: Prior(p.value, float(sd), _SOURCE) for p, sd in zip(model.parameters.free, deviations, strict=True)
@@ -291,6 +294,16 @@ def _leg_findings(task: TuningTask, log: StabiliserLog) -> list[Finding]:
     if all(leg.is_controlled for leg in log.legs):
         findings.append(Finding(
             Severity.INFO, "no-leg-off", "no leg has the controller off: the reduction rests on the model alone",
+        ))  # fmt: skip
+    departures = log.fit.departures
+    if log.fit.departure_evidence > float(chdtri(len(departures), _CHANCE)):
+        place = int(np.argmax(np.abs(departures)))
+        findings.append(Finding(
+            Severity.WARNING, "model-moved",
+            f"waves move '{task.loop.output}' otherwise than the assumed spectrum and effective slope, most at "
+            f"{departure_frequencies(task.loop)[place]:.2g} rad/s",
+            f"a factor of {math.exp(departures[place]):.2g} in energy", "check heading, hull and spectrum of the loop "
+            "file; the other values were found with the excitation that the log shows",
         ))  # fmt: skip
     if not log.fit.is_converged:
         findings.append(Finding(

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache, reduce
 
 import numpy as np
@@ -22,6 +22,7 @@ from seatrial.physics.sea.spectrum import speed_factor
 
 SEA_UNKNOWNS = ("height", "peak period", "peak")
 """What is unknown of a sea: logarithms of significant height [m] and peak period [s], and of gamma - 1."""
+SEA_COUNT = len(SEA_UNKNOWNS)
 
 _WINDOW_POWER = 1.5  # mean of a Hann window's square over the square of its mean: the area under its leakage, in bins
 _NODES_A_BIN = 3.0  # nodes over the wave frequency for each bin of the transform, at least; chosen
@@ -39,6 +40,7 @@ class EncounteredSea:
         omega: (n,), rad/s; omega_e: (n,), rad/s, the frequencies at which they are met; width: rad/s.
         effect_energy: (n,), |effect|^2 for each metre of wave; leakage: (k, n), s/rad, what each frequency of a
             transform shows of each node's energy.
+        shapes: (j, n), what each departure adds to the logarithm of the energy at each node.
     """
 
     omega: Array
@@ -46,10 +48,15 @@ class EncounteredSea:
     width: float
     effect_energy: Array
     leakage: Array
+    shapes: Array
 
     def disturbance_energy(self, sea: Array) -> Array:
-        """Return each node's share of the variance of the disturbance, (n,), in the sea (3,) of `SEA_UNKNOWNS`."""
-        return self.effect_energy * sea_spectrum(sea).density(self.omega) * self.width
+        """Return each node's share of the variance of the disturbance, (n,).
+
+        sea: (3 + j,), `SEA_UNKNOWNS` and the departures of wave spectrum and effect together from what is assumed.
+        """
+        assumed = self.effect_energy * sea_spectrum(sea[:SEA_COUNT]).density(self.omega) * self.width
+        return assumed * np.exp(sea[SEA_COUNT:] @ self.shapes)
 
     def density(self, sea: Array, power_gain: Array) -> Array:
         """Return the density of a motion as the transforms show it, (k,); power_gain: (n,), |response|^2 at omega_e."""
@@ -63,8 +70,14 @@ def sea_spectrum(sea: Array) -> Spectrum:
     return replace(raw, A=raw.A * height**2 / (16.0 * raw.moment(0)))  # significant height is four standard deviations
 
 
-def encountered_sea(bins: Array, U: float, beta: float, effect: WaveEffect) -> EncounteredSea:
+_NO_KNOTS: Array = np.empty(0)
+
+
+def encountered_sea(bins: Array, U: float, beta: float, effect: WaveEffect, knots: Array = _NO_KNOTS) -> EncounteredSea:
     """Return the nodes for transforms at `bins` (k,) [rad/s], a ship of speed U [m/s], heading beta [rad, 0 following].
+
+    knots: (j,), rising [rad/s], encounter frequencies at which the spectrum may depart from the assumed one, straight
+    between them in the logarithm of the frequency.
 
     Raises:
         InputError: speed or heading out of sense.
@@ -83,7 +96,9 @@ def encountered_sea(bins: Array, U: float, beta: float, effect: WaveEffect) -> E
     places = np.rint(((omega_e - bins[0]) / step + _LEAKAGE_BINS) * _PLACES_A_BIN).astype(int)
     is_near = (places >= 0) & (places < columns.shape[1])
     leakage = np.where(is_near, columns[:, np.where(is_near, places, 0)], 0.0) / step
-    return EncounteredSea(omega, omega_e, width, np.abs(effect.amplitude(omega, U, beta)) ** 2, leakage)
+    place = np.log(np.maximum(omega_e, bins[0]))
+    shapes = np.array([np.interp(place, np.log(knots), row) for row in np.eye(len(knots))]).reshape(-1, count)
+    return EncounteredSea(omega, omega_e, width, np.abs(effect.amplitude(omega, U, beta)) ** 2, leakage, shapes)
 
 
 @lru_cache(maxsize=_KEPT)
@@ -206,7 +221,7 @@ def stretch_spectra(values: Array, dt: float, segment_s: float) -> StretchSpectr
 
 # One stretch of steady speed and heading in waves that nobody measured: its likelihood in closed loop (Whittle).
 
-SHIP_COUNT, SEA_COUNT = len(PLANT_FACTORS), len(SEA_UNKNOWNS)
+SHIP_COUNT = len(PLANT_FACTORS)
 STEP = 1e-4  # of logarithmic unknowns, for central differences; chosen
 _FLOOR = 1e-5  # of the largest density: sensors and whatever else the sea does not explain; chosen
 _PERIODS = np.geomspace(0.4, 2.5, 15)  # peak periods to begin from, over the one expected; chosen
@@ -306,20 +321,21 @@ class WaveLeg:
         return self.spectra.information * float(np.sum(terms)), np.log(density)
 
     def equations(self, ship: Array, sea: Array) -> tuple[Array, Array]:
-        """Return gradient (6,) and Fisher information (6, 6) of the cost, over the ship's and the sea's unknowns."""
+        """Return gradient (u,) and Fisher information (u, u) of the cost, over the ship's and the sea's unknowns."""
         here, energy = self.responses(ship), self.sea.disturbance_energy(sea)
         ends = [
             *([self._likelihood(self.responses(ship + sign * step), energy) for sign in (1.0, -1.0)]
               for step in STEP * np.eye(SHIP_COUNT)),
             *([self._likelihood(here, self.sea.disturbance_energy(sea + sign * step)) for sign in (1.0, -1.0)]
-              for step in STEP * np.eye(SEA_COUNT)),
+              for step in STEP * np.eye(len(sea))),
         ]  # fmt: skip
         gradient, slopes = (np.array([up[part] - down[part] for up, down in ends]) / (2.0 * STEP) for part in (0, 1))
         return gradient, self.spectra.information * slopes @ slopes.T
 
     def start(self, ship: Array, peak: float) -> Array:
         """Return the sea (3,) of the best of some peak periods, its height by the energy of the motion."""
-        points = [np.array([0.0, np.log(self.expected_period * ratio), peak]) for ratio in _PERIODS]
+        as_assumed = np.zeros(len(self.sea.shapes))
+        points = [np.array([0.0, np.log(self.expected_period * ratio), peak, *as_assumed]) for ratio in _PERIODS]
         responses = self.responses(ship)
         for point in points:
             density = np.exp(self._likelihood(responses, self.sea.disturbance_energy(point))[1])
@@ -332,6 +348,7 @@ class WaveLeg:
 # log(gamma - 1) before the records: gamma 1.2 to 5.5 within a standard deviation, about what JONSWAP's records have
 PEAK_MEAN, PEAK_DEVIATION = 0.0, 1.5
 _WIDEST_SHIP = 1.6  # logarithm of a factor on the ship, either way: five times; chosen
+_WIDEST_SHAPE = 6.0  # logarithm of a factor on the energy, either way: four hundred times; chosen
 _LOWEST_SEA, _HIGHEST_SEA = np.array([-7.0, -3.0, -5.0]), np.array([4.0, 5.0, 3.0])
 """Bounds of a sea's unknowns: 1 mm to 55 m, 0.05 to 150 s, gamma 1.007 to 21; chosen."""
 _NEGLIGIBLE, _EVALUATIONS = 1e-6, 200  # promised gain of log-likelihood that ends a search, and its length; chosen
@@ -346,42 +363,51 @@ class LegPriors:
         ship: of the ship's factors, (3,); zero holds one.
         sea_change: of the logarithms of height and peak period from one leg to the next, (2,); infinite where the legs
             have nothing to do with one another.
+        shape: covariance of the departures from the assumed spectrum, the same in all legs, (j, j).
     """
 
     ship: Array
     sea_change: Array
+    shape: Array = field(default_factory=lambda: np.empty((0, 0)))
 
 
 @dataclass(frozen=True, eq=False)
 class LegsInWaves:
-    """A `LeastSquares` problem: the ship's factors (3,) and then the unknowns of each leg's sea (3,) in turn."""
+    """A `LeastSquares` problem: the ship's factors (3,), departures of the spectrum (j,), then each leg's sea (3,)."""
 
     legs: tuple[WaveLeg, ...]
     priors: LegPriors
 
     @property
+    def _shape_count(self) -> int:
+        return len(self.priors.shape)
+
+    @property
     def lower(self) -> Array:
         """Lower bounds."""
-        return np.concatenate([np.where(self.priors.ship > 0.0, -_WIDEST_SHIP, 0.0), *[_LOWEST_SEA] * len(self.legs)])
+        ship, shape = np.where(self.priors.ship > 0.0, -_WIDEST_SHIP, 0.0), np.full(self._shape_count, -_WIDEST_SHAPE)
+        return np.concatenate([ship, shape, *[_LOWEST_SEA] * len(self.legs)])
 
     @property
     def upper(self) -> Array:
         """Upper bounds."""
-        return np.concatenate([np.where(self.priors.ship > 0.0, _WIDEST_SHIP, 0.0), *[_HIGHEST_SEA] * len(self.legs)])
+        ship, shape = np.where(self.priors.ship > 0.0, _WIDEST_SHIP, 0.0), np.full(self._shape_count, _WIDEST_SHAPE)
+        return np.concatenate([ship, shape, *[_HIGHEST_SEA] * len(self.legs)])
 
     def cost(self, shared: Array, local: Array) -> float:  # noqa: ARG002
         """Return minus the logarithm of the posterior, up to a constant."""
-        ship, seas = _split(shared)
+        ship, seas = _split(shared, len(self.legs))
         away = shared - self._prior_mean
         legs = sum(leg.likelihood(ship, sea)[0] for leg, sea in zip(self.legs, seas, strict=True))
         return legs + 0.5 * float(away @ self._precision @ away)
 
     def normal(self, shared: Array, local: Array) -> NormalEquations:
         """Return cost, gradient and Fisher information at a point."""
-        ship, seas = _split(shared)
+        ship, seas = _split(shared, len(self.legs))
         gradient, hessian = self._precision @ (shared - self._prior_mean), self._precision.copy()
+        shape = np.arange(SHIP_COUNT, SHIP_COUNT + self._shape_count)
         for k, (leg, sea) in enumerate(zip(self.legs, seas, strict=True)):
-            rows = np.r_[:SHIP_COUNT, _sea_slice(k)]
+            rows = np.r_[:SHIP_COUNT, _sea_slice(k, self._shape_count), shape]
             own_gradient, own_hessian = leg.equations(ship, sea)
             gradient[rows] += own_gradient
             hessian[np.ix_(rows, rows)] += own_hessian
@@ -391,23 +417,28 @@ class LegsInWaves:
         )
 
     def start(self) -> Array:
-        """Return the ship as the model has it, in the sea that explains each leg best."""
+        """Return the ship as the model has it, in the sea of the assumed spectrum that explains each leg best."""
         none = np.zeros(SHIP_COUNT)
-        return np.concatenate([none, *(leg.start(none, PEAK_MEAN) for leg in self.legs)])
+        seas = [leg.start(none, PEAK_MEAN)[:SEA_COUNT] for leg in self.legs]
+        return np.concatenate([none, np.zeros(self._shape_count), *seas])
 
     @property
     def _prior_mean(self) -> Array:
-        return np.concatenate([np.zeros(SHIP_COUNT), *[[0.0, 0.0, PEAK_MEAN]] * len(self.legs)])
+        return np.concatenate([np.zeros(SHIP_COUNT + self._shape_count), *[[0.0, 0.0, PEAK_MEAN]] * len(self.legs)])
 
     @property
     def _precision(self) -> Array:
         """Return the inverse of the covariance before the legs; the first sea's height and period are not known."""
         is_held = self.priors.ship <= 0.0
         ship = np.where(is_held, 0.0, 1.0 / np.where(is_held, 1.0, self.priors.ship) ** 2)
-        precision = np.diag(np.concatenate([ship, *[[0.0, 0.0, 1.0 / PEAK_DEVIATION**2]] * len(self.legs)]))
+        seas = [np.array([0.0, 0.0, 1.0 / PEAK_DEVIATION**2])] * len(self.legs)
+        precision = np.diag(np.concatenate([ship, np.zeros(self._shape_count), *seas]))
+        shape = slice(SHIP_COUNT, SHIP_COUNT + self._shape_count)
+        precision[shape, shape] = np.linalg.inv(self.priors.shape)
         change = np.diag(1.0 / self.priors.sea_change**2)
         for k in range(len(self.legs) - 1):
-            one, other = (np.arange(_sea_slice(leg).start, _sea_slice(leg).start + len(change)) for leg in (k, k + 1))
+            starts = (_sea_slice(leg, self._shape_count).start for leg in (k, k + 1))
+            one, other = (np.arange(start, start + len(change)) for start in starts)
             for first, second, sign in ((one, one, 1.0), (other, other, 1.0), (one, other, -1.0), (other, one, -1.0)):
                 precision[np.ix_(first, second)] += sign * change
         return precision
@@ -418,15 +449,18 @@ class LegFit:
     """Ship and seas that the legs show.
 
     Attributes:
-        ship: (3,), of `PLANT_FACTORS`; seas: (s, 3), of `SEA_UNKNOWNS`, a row for each leg.
-        covariance: of the ship's unknowns and then the seas' in turn, (3 + 3 s, 3 + 3 s).
-        cost: minus the logarithm of the posterior, up to a constant; is_converged: whether the search ended there.
+        ship: (3,), of `PLANT_FACTORS`; seas: (s, 3 + j), of `SEA_UNKNOWNS` and the departures from the assumed
+            spectrum, which are the same in all, a row for each leg.
+        covariance: of the ship's unknowns, the departures and then the seas' in turn, (3 + j + 3 s, 3 + j + 3 s).
+        evidence: logarithm of the marginal likelihood by Laplace's method, up to a constant that is the same for all
+            covariances of the departures (MacKay 1992, Neural Computation 4, 415-447, eq. (2.6)).
+        is_converged: whether the search ended at the optimum.
     """
 
     ship: Array
     seas: Array
     covariance: Array
-    cost: float
+    evidence: float
     is_converged: bool
 
     @property
@@ -436,12 +470,23 @@ class LegFit:
 
     def sea_deviations(self, leg: int) -> Array:
         """Return standard deviations of the unknowns of a leg's sea, (3,)."""
-        return np.sqrt(np.diag(self.covariance)[_sea_slice(leg)])
+        return np.sqrt(np.diag(self.covariance)[_sea_slice(leg, len(self.departures))])
+
+    @property
+    def departures(self) -> Array:
+        """Departures of the spectrum from the assumed one, (j,)."""
+        return self.seas[0, SEA_COUNT:]
+
+    @property
+    def departure_evidence(self) -> float:
+        """Return Wald's statistic of all departures together, at most chi-square of as many degrees of freedom."""
+        rows = slice(SHIP_COUNT, SHIP_COUNT + len(self.departures))
+        return float(self.departures @ np.linalg.solve(self.covariance[rows, rows], self.departures))
 
     def deviation(self, value: Callable[[Array, Array], float]) -> float:
-        """Return the standard deviation of a value of ship (3,) and seas (s, 3), to the first order."""
-        centre = np.concatenate([self.ship, self.seas.ravel()])
-        ends = ([value(*_split(centre + sign * s)) for sign in (1.0, -1.0)] for s in STEP * np.eye(len(centre)))
+        """Return the standard deviation of a value of ship (3,) and seas (s, 3 + j), to the first order."""
+        centre, count = np.concatenate([self.ship, self.departures, self.seas[:, :SEA_COUNT].ravel()]), len(self.seas)
+        ends = ([value(*_split(centre + sign * s, count)) for sign in (1.0, -1.0)] for s in STEP * np.eye(len(centre)))
         slope = np.array([up - down for up, down in ends]) / (2.0 * STEP)
         return float(np.sqrt(max(slope @ self.covariance @ slope, 0.0)))
 
@@ -450,18 +495,23 @@ def fit_legs(legs: Sequence[WaveLeg], priors: LegPriors) -> LegFit:
     """Return the ship and the seas that explain the legs, in order of time, best."""
     problem = LegsInWaves(tuple(legs), priors)
     optimum = levenberg_marquardt(problem, problem.start(), _NO_LOCAL, negligible=_NEGLIGIBLE, evaluations=_EVALUATIONS)
-    is_free = problem.upper > problem.lower
-    covariance = np.zeros((len(is_free), len(is_free)))
-    covariance[np.ix_(is_free, is_free)] = inverse(optimum.normal.hessian[np.ix_(is_free, is_free)])
+    free = np.flatnonzero(problem.upper > problem.lower)
+    information = optimum.normal.hessian[np.ix_(free, free)]
+    covariance = np.zeros((len(problem.lower), len(problem.lower)))
+    covariance[np.ix_(free, free)] = inverse(information)
+    spread = float(np.linalg.slogdet(information)[1] + np.linalg.slogdet(priors.shape)[1])
     is_converged = optimum.solution.status is Status.CONVERGED
-    return LegFit(*_split(optimum.solution.point), covariance, optimum.solution.value, is_converged)
+    ship, seas = _split(optimum.solution.point, len(legs))
+    return LegFit(ship, seas, covariance, -optimum.solution.value - 0.5 * spread, is_converged)
 
 
-def _split(point: Array) -> tuple[Array, Array]:
-    """Return the ship's factors (3,) and the seas (s, 3)."""
-    return point[:SHIP_COUNT], point[SHIP_COUNT:].reshape(-1, SEA_COUNT)
+def _split(point: Array, legs: int) -> tuple[Array, Array]:
+    """Return the ship's factors (3,) and the seas of the legs with the departures, (s, 3 + j)."""
+    shape_end = len(point) - SEA_COUNT * legs
+    shape = np.tile(point[SHIP_COUNT:shape_end], (legs, 1))
+    return point[:SHIP_COUNT], np.hstack([point[shape_end:].reshape(legs, SEA_COUNT), shape])
 
 
-def _sea_slice(leg: int) -> slice:
-    first = SHIP_COUNT + SEA_COUNT * leg
+def _sea_slice(leg: int, shape_count: int) -> slice:
+    first = SHIP_COUNT + shape_count + SEA_COUNT * leg
     return slice(first, first + SEA_COUNT)

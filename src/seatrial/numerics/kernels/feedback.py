@@ -1,4 +1,4 @@
-"""Integration with a command in the loop: linear and sampled controllers, and a track followed."""
+"""Integration with a command in the loop: a controller that samples, and a track followed."""
 
 import math
 
@@ -18,22 +18,24 @@ from seatrial.numerics.kernels.kernel import (
     VECTOR,
     kernel,
 )
+from seatrial.numerics.kernels.linear import advance
 
-# Integration with a command in the loop, held over its step; and the command of a linear controller with an actuator.
+# Integration with a command in the loop, held over its step.
 
 # places in the memory
 (
-    CONTROLLER_ORDER, COUNT, OUTPUT, ACTUATOR, DISTURBED_INPUT, TRIM, EFFECT, LIMIT, SLEW, STALL, LOSS, STEP, ANGLE,
-    EFFECTIVE_ANGLE, SATURATION_EXCESS, ANTI_WINDUP, OUTPUT_LAST, OUTPUT_BEFORE_LAST, ERROR_LAST, SERIES, EVERY,
+    COUNT, OUTPUT, ACTUATOR, DISTURBED_INPUT, TRIM, EFFECT, LIMIT, SLEW, STALL, LOSS, STEP, ANGLE, SERIES, EVERY,
     SENSOR, SENSOR_ORDER, SERVO, SERVO_ORDER, BLOCKS, TERM_COUNT, FILTER_COUNT, QUEUE, QUEUE_SIZE, NOISE, RESOLUTION,
     SAMPLE_SLEW, HELD_ORDER, ORDER_EXCESS, LAST_ORDER, READING_ERROR, HEAD_SIZE,
-) = range(38)  # fmt: skip
+) = range(31)  # fmt: skip
 
 _WORK_ROWS = 6  # scratch of a step: x, y and the four stages of `rk4_step`
 
 
-@kernel(I8(FUNCTION, COMMAND, VECTOR, VECTOR, VECTOR, VECTOR, F8, MATRIX, MATRIX, MATRIX), **LEAN)
-def _steer(f, command, x0, u, p, memory, dt, x_out, u_out, work):
+@kernel(
+    I8(FUNCTION, COMMAND, VECTOR, VECTOR, VECTOR, VECTOR, F8, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX), **LEAN
+)
+def _steer(f, command, x0, u, p, memory, dt, e, g0, g1, x_out, u_out, work):
     nx = x0.size
     x, y, k1, k2, k3, k4 = work[0], work[1], work[2], work[3], work[4], work[5]
     for i in range(nx):
@@ -44,26 +46,31 @@ def _steer(f, command, x0, u, p, memory, dt, x_out, u_out, work):
         command(t, x, memory, u)
         for i in range(nx):
             x_out[row, i] = x[i]
-        for j in range(u.size):
+        for j in range(u_out.shape[1]):
             u_out[row, j] = u[j]
         if not size < DIVERGED:
             return row
-        size = rk4_step(f, t, x, u, u, u, p, dt, k1, k2, k3, k4, y)
+        size = advance(e, g0, g1, x, u, u, y) if e.size > 0 else rk4_step(f, t, x, u, u, u, p, dt, k1, k2, k3, k4, y)
     return -1
 
 
-def steer(f, command, x0, u_start, p, memory, dt, x_out, u_out):
+_NOT_LINEAR = (np.empty((0, 0)),) * 3
+
+
+def steer(f, command, x0, u_start, p, memory, dt, x_out, u_out, exact=_NOT_LINEAR):
     """Integrate with a command in the loop; return the step at which it diverged, or -1.
 
-    x_out, u_out: states and the input held from that sample on, one row a step.
+    x_out, u_out: states and the input held from that sample on, one row a step. exact: of an affine model e (nx, nx),
+    g0, g1 (nx, nu + 1) over a step, the constant 1 as the last input; then no step of Runge and Kutta is taken.
     """
-    return _steer(f, command, x0, u_start.copy(), p, memory, dt, x_out, u_out, np.empty((_WORK_ROWS, len(x0))))
+    work = np.empty((_WORK_ROWS, len(x0)))
+    return _steer(f, command, x0, np.append(u_start, 1.0), p, memory, dt, *exact, x_out, u_out, work)
 
 
 @njit(inline="always", **OPTIONS)
-def controller_size(n):
-    """Return the places of one law: E by columns (n, n), g0 (n), g1 (n), the order a step ahead: row (n), r0, r1."""
-    return n * n + 3 * n + 2
+def law_size(n):
+    """Return the places of a law: E by columns (n, n), g0 (n), g1 (n), c (n), d; its states (n) stand behind it."""
+    return n * n + 3 * n + 1
 
 
 @njit(inline="always", **OPTIONS)
@@ -72,7 +79,18 @@ def clamp(value, bound):
     return min(max(value, -bound), bound)
 
 
-@njit(**OPTIONS)
+@njit(inline="always", **OPTIONS)
+def _followed(value, order, limit, slew):
+    """Return where a value goes in a step after its order: to the order itself where the limits let it.
+
+    A sum that rounds beside the order would look as if a limit had held it.
+    """
+    if abs(order) <= limit and abs(order - value) <= slew:
+        return order
+    return clamp(value + clamp(clamp(order, limit) - value, slew), limit)
+
+
+@njit(inline="always", **OPTIONS)
 def effective_angle(angle, stall, loss):
     """Return the angle that would lift as much without stall: beyond it, `loss` is lost for each unit, down to 0."""
     size = abs(angle)
@@ -84,7 +102,7 @@ def effective_angle(angle, stall, loss):
 
 @njit(inline="always", **OPTIONS)
 def _advance(memory, law, states, n, last_error, error):
-    """Advance the controller's states over the step that ends now, column by column: views become vectors."""
+    """Advance the states of a law over the step that ends now, column by column: views become vectors."""
     g0, g1 = law + n * n, law + n * n + n
     before, now = memory[states : states + n], memory[states + n : states + 2 * n]
     for i in range(n):
@@ -106,92 +124,31 @@ def _row_times_states(memory, start, states, n):
     return total
 
 
-@kernel(COMMAND_SIGNATURE, **LEAN)
-def linear_controller(_, x, memory, u):
-    """Set order, angle and effect; slow states are held while a limit bites and they would drive further into it."""
-    n, count, k = int(memory[CONTROLLER_ORDER]), int(memory[COUNT]), int(memory[STEP])
-    size = controller_size(n)
-    slow = HEAD_SIZE + 2 * size
-    states = slow + n + 1
-    reference = int(memory[SERIES])
-    disturbance = reference + count + 1
-    fed_forward = disturbance + count
-    angles = fed_forward + count + 1
-    y = x[int(memory[OUTPUT])]
-    error = memory[reference + k] - y
-    ahead = y
-    if k > 0:
-        _advance(memory, HEAD_SIZE + int(memory[ANTI_WINDUP]) * size, states, n, memory[ERROR_LAST], error)
-        ahead = 2.0 * y - memory[OUTPUT_LAST]
-    if k > 1:
-        ahead += y - 2.0 * memory[OUTPUT_LAST] + memory[OUTPUT_BEFORE_LAST]
-    excess = memory[SATURATION_EXCESS]
-    drift = _row_times_states(memory, slow, states, n) + memory[slow + n] * error
-    memory[ANTI_WINDUP] = 1.0 if excess * drift > 0.0 else 0.0
-    law = HEAD_SIZE + int(memory[ANTI_WINDUP]) * size
-    row = law + n * n + 2 * n
-    coming = memory[reference + k + 1] - ahead
-    order = _row_times_states(memory, row, states, n) + memory[row + n] * error + memory[row + n + 1] * coming
-    order += memory[fed_forward + k + 1]
-    angle = memory[ANGLE]
-    # clamped once more: the sum may round beyond the limit
-    new = clamp(angle + clamp(clamp(order, memory[LIMIT]) - angle, memory[SLEW]), memory[LIMIT])
-    is_free = abs(order) <= memory[LIMIT] and abs(order - angle) <= memory[SLEW]
-    memory[SATURATION_EXCESS] = 0.0 if is_free else order - new
-    stall, loss = memory[STALL], memory[LOSS]
-    lift = effective_angle(new, stall, loss)
-    # the mean over the step, sharpened: the formula at the head of this file
-    mean = (2.0 * lift + 5.0 * effective_angle(angle, stall, loss) - memory[EFFECTIVE_ANGLE]) / 6.0
-    memory[EFFECTIVE_ANGLE] = effective_angle(angle, stall, loss)
-    place, disturbed = int(memory[ACTUATOR]), int(memory[DISTURBED_INPUT])
-    u[place] = memory[TRIM] + memory[EFFECT] * mean
-    if disturbed == place:
-        u[place] += memory[disturbance + k]
-    elif disturbed >= 0:
-        u[disturbed] = memory[disturbance + k]
-    memory[ERROR_LAST], memory[OUTPUT_BEFORE_LAST], memory[OUTPUT_LAST] = error, memory[OUTPUT_LAST], y
-    memory[ANGLE] = new
-    memory[angles + k + 1] = new
-    memory[STEP] = k + 1.0
-
-
 # The command of a controller that samples: difference equations, an order that is held and acts late, and limits.
 
 # places of a block in the memory: order, gain, sign of what it holds, last output, and where its numbers begin
 BLOCK_ORDER, BLOCK_GAIN, BLOCK_HOLDS, BLOCK_LAST, BLOCK_HEAD = range(5)
 
 
-@njit(**OPTIONS)
+@njit(inline="always", **OPTIONS)
 def _sense(memory, error):
     """Move the sensor on by an error that ran straight since the last step, and what was misread then and stood."""
     n, at = int(memory[SENSOR_ORDER]), int(memory[SENSOR])
-    g0 = at + n * n
-    g1, c = g0 + n, g0 + 2 * n
-    states, scratch = c + n + 1, c + 2 * n + 1
-    last, misread = scratch + n, memory[READING_ERROR]
+    states, misread = at + law_size(n), memory[READING_ERROR]
+    last = states + 2 * n
     if memory[STEP] > 0.0:
-        for i in range(n):
-            total = memory[g0 + i] * (memory[last] + misread) + memory[g1 + i] * (error + misread)
-            for j in range(n):
-                total += memory[at + j * n + i] * memory[states + j]
-            memory[scratch + i] = total
-        for i in range(n):
-            memory[states + i] = memory[scratch + i]
+        _advance(memory, at, states, n, memory[last] + misread, error + misread)
     memory[last] = error
 
 
-@njit(**OPTIONS)
-def _sensed(memory, error):
-    """Return what the sensor shows of an error."""
-    n = int(memory[SENSOR_ORDER])
-    c = int(memory[SENSOR]) + n * n + 2 * n
-    seen = memory[c + n] * error
-    for i in range(n):
-        seen += memory[c + i] * memory[c + n + 1 + i]
-    return seen
+@njit(inline="always", **OPTIONS)
+def _answer(memory, law, n, value):
+    """Return what a law shows of a value now: c x + d value."""
+    c = law + n * n + 2 * n
+    return memory[c + n] * value + _row_times_states(memory, c, law + law_size(n), n)
 
 
-@njit(**OPTIONS)
+@njit(inline="always", **OPTIONS)
 def _misread(memory, output, noise):
     """Return by how much a sample of the output is read too small."""
     read, unit = output + noise, memory[RESOLUTION]
@@ -200,7 +157,7 @@ def _misread(memory, output, noise):
     return output - read
 
 
-@njit(**OPTIONS)
+@njit(inline="always", **OPTIONS)
 def _through(memory, block, x, push):
     """Return the answer of a block's difference equation; one that holds keeps its last where it would push further.
 
@@ -221,7 +178,7 @@ def _through(memory, block, x, push):
     return y
 
 
-@njit(**OPTIONS)
+@njit(inline="always", **OPTIONS)
 def _ordered(memory, error, fed_forward):
     """Return the order of a sample: terms in parallel, filters in a row, what is fed forward."""
     excess, order, at = memory[ORDER_EXCESS], 0.0, int(memory[BLOCKS])
@@ -233,30 +190,18 @@ def _ordered(memory, error, fed_forward):
         order = _through(memory, at, order, 0.0)
         at += BLOCK_HEAD + 3 * int(memory[at + BLOCK_ORDER]) + 2
     order += fed_forward
-    held = memory[HELD_ORDER]
-    held = clamp(held + clamp(clamp(order, memory[LIMIT]) - held, memory[SAMPLE_SLEW]), memory[LIMIT])
+    held = _followed(memory[HELD_ORDER], order, memory[LIMIT], memory[SAMPLE_SLEW])
     memory[HELD_ORDER] = held
     return order, order - held
 
 
-@njit(**OPTIONS)
+@njit(inline="always", **OPTIONS)
 def _served(memory, order):
     """Return what the servo would do without limits at the start and the end of a step in which an order stands."""
     n, at = int(memory[SERVO_ORDER]), int(memory[SERVO])
-    g = at + n * n
-    c = g + n
-    states, scratch = c + n + 1, c + 2 * n + 1
-    before = now = memory[c + n] * order
-    for i in range(n):
-        before += memory[c + i] * memory[states + i]
-        total = memory[g + i] * order
-        for j in range(n):
-            total += memory[at + j * n + i] * memory[states + j]
-        memory[scratch + i] = total
-    for i in range(n):
-        memory[states + i] = memory[scratch + i]
-        now += memory[c + i] * memory[states + i]
-    return before, now
+    before = _answer(memory, at, n, order)
+    _advance(memory, at, at + law_size(n), n, order, order)
+    return before, _answer(memory, at, n, order)
 
 
 @kernel(COMMAND_SIGNATURE, **LEAN)
@@ -264,16 +209,17 @@ def sampled_controller(_, x, memory, u):
     """Sample where it is time, let the order wait, and move the actuator within its limits."""
     count, k, every = int(memory[COUNT]), int(memory[STEP]), int(memory[EVERY])
     reference = int(memory[SERIES])
-    disturbance = reference + count + 1
+    disturbance = reference + count
     fed_forward = disturbance + count
-    angles = fed_forward + count + 1
+    angles = fed_forward + count
     output = x[int(memory[OUTPUT])]
     error = memory[reference + k] - output
     _sense(memory, error)
     if k % every == 0:
         misread = _misread(memory, output, memory[int(memory[NOISE]) + k // every])
         memory[READING_ERROR] = misread
-        memory[LAST_ORDER], excess = _ordered(memory, _sensed(memory, error + misread), memory[fed_forward + k])
+        seen = _answer(memory, int(memory[SENSOR]), int(memory[SENSOR_ORDER]), error + misread)
+        memory[LAST_ORDER], excess = _ordered(memory, seen, memory[fed_forward + k])
         memory[ORDER_EXCESS] = excess
     queue, size = int(memory[QUEUE]), int(memory[QUEUE_SIZE])
     late = memory[LAST_ORDER]
@@ -283,7 +229,7 @@ def sampled_controller(_, x, memory, u):
     begun, wanted = _served(memory, late)
     begun, wanted = clamp(begun, memory[LIMIT]), clamp(wanted, memory[LIMIT])
     angle, slew = memory[ANGLE], memory[SLEW]
-    new = clamp(angle + clamp(wanted - angle, slew), memory[LIMIT])
+    new = _followed(angle, wanted, memory[LIMIT], slew)
     # a triangle is lost where the actuator first has to catch up with an order that jumped
     gap = begun - angle
     mean = 0.5 * (begun + new) - 0.5 * gap * min(abs(gap) / slew, 1.0) if new == wanted else 0.5 * (angle + new)
@@ -299,7 +245,7 @@ def sampled_controller(_, x, memory, u):
     memory[STEP] = k + 1.0
 
 
-# A craft that follows a track: line of sight orders the heading that a linear controller keeps.
+# A craft that follows a track: line of sight orders the heading that a controller keeps.
 
 # places in the memory
 (
@@ -318,7 +264,7 @@ def track_follower(t, x, memory, u):
     TURN, and is taken within ACCEPTANCE of it along the track.
     """
     count, k, every, reference = int(memory[COUNT]), int(memory[STEP]), int(memory[EVERY]), int(memory[SERIES])
-    block = reference + 4 * count + 3
+    block = reference + 4 * count + 1
     north, east = x[int(memory[block + NORTH])], x[int(memory[block + EAST])]
     if memory[block + LEG] == 0.0 and memory[block + CORNER] - north < memory[block + ACCEPTANCE]:
         memory[block + LEG], memory[block + NEW_LEG] = 1.0, k
@@ -328,7 +274,7 @@ def track_follower(t, x, memory, u):
         # distance to starboard of the leg (Fossen 2011, eq. (10.58))
         error = -(north - memory[block + CORNER]) * math.sin(course) + east * math.cos(course)
     memory[block + TRACK_HEAD + k] = error
-    if every > 1 and k % every != 0:
+    if k % every != 0:
         sampled_controller(t, x, memory, u)
         return
     delta, total = memory[block + LOOKAHEAD], error + memory[block + INTEGRAL_GAIN] * memory[block + INTEGRAL]
@@ -337,8 +283,4 @@ def track_follower(t, x, memory, u):
     order = before + clamp(course - math.atan(total / delta) - before, memory[block + ORDER_STEP])
     memory[block + ORDER] = order
     memory[reference + k] = order
-    if every > 0:
-        sampled_controller(t, x, memory, u)
-        return
-    memory[reference + k + 1] = order if k == 0 else 2.0 * order - before
-    linear_controller(t, x, memory, u)
+    sampled_controller(t, x, memory, u)

@@ -233,7 +233,7 @@ def affine_population(f, nx, nu, p):
 
 
 @njit(inline="always", **OPTIONS)
-def _advance(e, g0, g1, x, u0, u1, y):
+def advance(e, g0, g1, x, u0, u1, y):
     """Set x to e x + g0 u0 + g1 u1 and return its size; y is scratch."""
     n = x.size
     size = 0.0
@@ -274,7 +274,7 @@ def _replay(e, g0, g1, c, d, matrix_index, inputs, offsets, substeps, x0, y_out,
                 break
             size = 0.0
             for _ in range(substeps):
-                size = _advance(e[w], g0[w], g1[w], x, inputs[row], inputs[row + 1], y)
+                size = advance(e[w], g0[w], g1[w], x, inputs[row], inputs[row + 1], y)
                 row += 1
             if not size < DIVERGED:
                 failed[s] = k + 1 - first
@@ -359,7 +359,7 @@ def _replay_tangent(
                 for i in range(nx):
                     for q in range(ncol):
                         s[i, q] = t[i, q]
-                size = _advance(ew, g0w, g1w, x, inputs[row], inputs[row + 1], y)
+                size = advance(ew, g0w, g1w, x, inputs[row], inputs[row + 1], y)
                 row += 1
             if not size < DIVERGED:
                 failed[seg] = k + 1 - first

@@ -6,7 +6,7 @@ L(j omega_f) = sum_i k_i (re[i, f] + j im[i, f]). Loops over frequencies stand i
 import numpy as np
 from numba import void
 
-from seatrial.numerics.kernels.kernel import F8, I8, MATRIX, OPTIONS, VECTOR, kernel
+from seatrial.numerics.kernels.kernel import F8, I8, INDEX, MATRIX, OPTIONS, VECTOR, kernel
 
 # sums over frequencies may be taken in any order: four or eight at once
 _ANY_ORDER_SUMS = {**OPTIONS, "fastmath": {"contract", "reassoc", "nsz", "arcp"}}
@@ -134,23 +134,26 @@ def _mixed_variance(weights, first, s, t, x, y):
 
 
 @kernel(
-    void(MATRIX, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX),
+    void(MATRIX, VECTOR, MATRIX, INDEX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX),
     **_ANY_ORDER_SUMS,
 )
-def evaluate_loops(k, d, n, re, im, s_weights, t_weights, mixed_weights, noise_weights, band_re, band_im, Ms, out):
+def evaluate_loops(
+    k, d, n, idle, re, im, s_weights, t_weights, mixed_weights, noise_weights, band_re, band_im, Ms, out
+):
     """Compute sensitivity peak and variances of loops; infinite where a loop is unstable.
 
-    k: gains (m, g). d (n + 1,), n (g, n + 1): characteristic polynomial d + k n. re, im: L_i (g, f) at the frequencies
+    k: gains (m, g). d (n + 1,), n (g, n + 1): characteristic polynomial d + k n, of which the last `idle` (m,)
+    coefficients vanish and are left out. re, im: L_i (g, f) at the frequencies
     of the sea; s_weights (rs, f), t_weights (rt, f): what |S|^2 and |L S|^2 weigh there; mixed_weights (4 rm, f): four
     rows for each variance of both, as of `_mixed_variance`; noise_weights (rs, f): what |L S|^2 weighs in the first rs.
     band_re, band_im: L_i over the whole band, for the peak;
     without frequencies no peak. Ms (m,); out (m, rs + rt + rm).
     """
-    order = d.size - 1
-    row, x, y = np.empty(order + 1), np.empty(re.shape[1]), np.empty(re.shape[1])
+    row, x, y = np.empty(d.size), np.empty(re.shape[1]), np.empty(re.shape[1])
     s, t = np.empty(re.shape[1]), np.empty(re.shape[1])
     wide_x, wide_y = np.empty(band_re.shape[1]), np.empty(band_re.shape[1])
     for m in range(k.shape[0]):
+        order = d.size - 1 - idle[m]
         for j in range(order + 1):
             total = d[j]
             for i in range(k.shape[1]):

@@ -373,6 +373,17 @@ class TransferLoop:
         return replace(self, gains=self.gains.with_values(dict(zip(self.gains.names, values, strict=True))))
 
     @property
+    def required_sampling(self) -> Sampling:
+        """How the controller samples.
+
+        Raises:
+            InputError: the loop does not say.
+        """
+        if self.sampling is None:
+            raise InputError(f"loop '{self.name}' takes no samples; give it sampling = Sampling(sample_s)")
+        return self.sampling
+
+    @property
     def continuous(self) -> Self:
         """Return the loop in continuous time: hold and dead time of a sampled one are a lag of its servo."""
         if self.sampling is None:
@@ -389,8 +400,7 @@ class TransferLoop:
     @cached_property
     def _held(self) -> Block:
         """From order to sample in w, of a sampled loop."""
-        assert self.sampling is not None
-        return held((*self.servo, self.plant, *self.sensor), self.sampling)
+        return held((*self.servo, self.plant, *self.sensor), self.required_sampling)
 
     @cached_property
     def _filtered(self) -> Block:
@@ -417,17 +427,24 @@ class TransferLoop:
             row[len(row) - len(made) :] = made
         return frozen(common), frozen(numerators)
 
+    @cached_property
+    def _integrating_terms(self) -> tuple[tuple[int, Index], ...]:
+        """Poles at the origin that terms of one denominator have, and which terms those are."""
+        made = []
+        for den in dict.fromkeys(term.block.den for term in self.terms):
+            at_origin = len(den) - len(np.trim_zeros(den, "b"))
+            if at_origin:
+                made.append((at_origin, np.flatnonzero([term.block.den == den for term in self.terms])))
+        return tuple(made)
+
     def idle_integrators(self, gains: Array) -> Index:
         """Return how many poles at the origin are those of terms whose gains are all zero, of gains (m, g), (m,).
 
         Such a term moves nothing: d and the n_i of the others have the factor s so many times, which is left out.
         """
         idle = np.zeros(len(gains), dtype=np.int64)
-        for den in dict.fromkeys(term.block.den for term in self.terms):
-            at_origin = len(den) - len(np.trim_zeros(den, "b"))
-            if at_origin:
-                of_den = [i for i, term in enumerate(self.terms) if term.block.den == den]
-                idle += at_origin * np.all(gains[:, of_den] == 0.0, axis=1)
+        for at_origin, terms in self._integrating_terms:
+            idle += at_origin * ~gains[:, terms].any(axis=1)
         return idle
 
     def fraction(self, gains: Array) -> tuple[Array, Array]:
@@ -461,13 +478,12 @@ class TransferLoop:
 
         It stands before the sensor until the next sample. Without a sensor they are 1 and 1 / P.
         """
-        if self.sampling is None:
-            raise InputError(f"loop '{self.name}' takes no samples, of which errors were known; give it a sample time")
-        w = self.sampling.in_w(omega)
+        sampling = self.required_sampling
+        w = sampling.in_w(omega)
         seen = self._held.frequency_response(w)
-        misread = held(self.sensor, replace(self.sampling, dead_time=0.0)).frequency_response(w) / seen
-        moved = in_series("servo", self.servo).frequency_response(omega) * self.sampling.hold(omega)
-        moving = held((*self.servo, self.plant), self.sampling).frequency_response(w)
+        misread = held(self.sensor, replace(sampling, dead_time=0.0)).frequency_response(w) / seen
+        moved = in_series("servo", self.servo).frequency_response(omega) * sampling.hold(omega)
+        moving = held((*self.servo, self.plant), sampling).frequency_response(w)
         return moving * misread, moved * misread
 
     def _term_responses(self, omega: Array) -> Complex:

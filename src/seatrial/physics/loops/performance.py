@@ -293,14 +293,8 @@ class Performance:
         if not with_Ms:
             wide_re = wide_im = self._no_frequencies
         peak, out = np.zeros(len(k)), np.empty((len(k), len(self.variances)))
-        idle, (d, n) = self.loop.idle_integrators(k), self._polynomials
-        for count in set(idle.tolist()):
-            alike = idle == count
-            Ms, variances = np.zeros(int(alike.sum())), np.empty((int(alike.sum()), len(self.variances)))
-            order = len(d) - count
-            evaluate_loops(k[alike], d[:order], np.ascontiguousarray(n[:, :order]), re, im, *self._node_weights,
-                           wide_re, wide_im, Ms, variances)  # fmt: skip
-            peak[alike], out[alike] = Ms, variances
+        evaluate_loops(k, *self._polynomials, self.loop.idle_integrators(k), re, im, *self._node_weights,
+                       wide_re, wide_im, peak, out)  # fmt: skip
         return LoopEvaluation(out, peak)
 
     def variance_gradients(self, gains: Array) -> Array:

@@ -1,9 +1,9 @@
-"""A loop in time: a controller, exactly discretised or sampled, on any model, within its actuator's limits."""
+"""A loop in time: a controller that samples, on any model, within its actuator's limits."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache, reduce
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -15,91 +15,9 @@ from seatrial.numerics.kernels.integrate import evaluate
 from seatrial.numerics.kernels.linear import propagators, replay
 from seatrial.physics.loops import Block, TransferLoop
 from seatrial.physics.loops.discrete import difference_equation, holding_terms
-from seatrial.physics.loops.loop import Sampling, controllable_form, held_step, in_series, straight_step
+from seatrial.physics.loops.loop import Sampling, controllable_form, in_series, straight_step
 from seatrial.physics.loops.loop_states import StateSpace
 from seatrial.physics.simulate.replay import commanded, record_of
-
-# The controller of a loop in steps: its own states, discretised exactly for an error that runs straight between them.
-
-
-@dataclass(frozen=True, eq=False)
-class ControllerStateSpace:
-    """x' = A x + b e, order = c x + d e, from the error e = reference - output to the actuator without limits.
-
-    Attributes:
-        A: (n, n); b, c: (n,).
-        is_slow: which states belong to terms that wind up, (n,): see `holding_terms`.
-        slow_rate: row (n + 1,) over [x, e] that gives the rate of change of the slow terms' share of the order.
-    """
-
-    A: Array
-    b: Array
-    c: Array
-    d: float
-    is_slow: Array
-    slow_rate: Array
-
-    def discretised(self, dt: float, *, is_holding: bool) -> Array:
-        """Return E by columns, g0, g1 and the row that gives the order a step ahead, flat.
-
-        Slow states stand still if `is_holding`.
-        """
-        moving = np.where(self.is_slow, 0.0, 1.0) if is_holding else np.ones(len(self.b))
-        E, before, after = straight_step(moving[:, None] * self.A, moving * self.b, dt)
-        ahead = (self.c @ E, [self.c @ before], [self.c @ after + self.d])
-        return np.concatenate([E.T.ravel(), before, after, *ahead])
-
-
-_UNIT_GAIN = ControllerStateSpace(np.zeros((0, 0)), np.zeros(0), np.zeros(0), 1.0, np.zeros(0, dtype=bool), np.zeros(1))
-
-
-def controller_state_space(loop: TransferLoop, gains: Array) -> ControllerStateSpace:
-    """Return sensor, terms with those gains (g,), filters and servo in a row."""
-    seen = reduce(_append_block, loop.sensor, _UNIT_GAIN)
-    made = replace(seen, c=np.zeros(len(seen.c)), d=0.0)
-    holds, share = holding_terms(loop)
-    for gain, term, is_held in zip(gains, loop.terms, holds, strict=True):
-        made = _add_term(made, seen, float(gain), term.block, is_slow=is_held)
-    before = len(made.b)
-    made = reduce(_append_block, (*loop.filters, *loop.servo), made)
-    drift = np.zeros(len(made.b) + 1)
-    drift[:before], drift[-1] = share * made.slow_rate[:before], share * made.slow_rate[-1]
-    return replace(made, slow_rate=drift)
-
-
-def _append_block(first: ControllerStateSpace, block: Block) -> ControllerStateSpace:
-    """Return a block behind."""
-    A, b, c, d = controllable_form(block)
-    n, m = len(first.b), len(b)
-    whole = np.zeros((n + m, n + m))
-    whole[:n, :n], whole[n:, :n], whole[n:, n:] = first.A, np.outer(b, first.c), A
-    return ControllerStateSpace(
-        whole, np.concatenate([first.b, b * first.d]), np.concatenate([d * first.c, c]), d * first.d,
-        np.concatenate([first.is_slow, np.zeros(m, dtype=bool)]),
-        np.concatenate([first.slow_rate[:-1], np.zeros(m), first.slow_rate[-1:]]),
-    )  # fmt: skip
-
-
-def _add_term(
-    controller: ControllerStateSpace, sensor: ControllerStateSpace, gain: float, block: Block, *, is_slow: bool
-) -> ControllerStateSpace:
-    """Return one more term on what the sensor shows; `controller` has the sensor's states first."""
-    A, b, c, d = controllable_form(block)
-    n, m, s = len(controller.b), len(b), len(sensor.b)
-    whole = np.zeros((n + m, n + m))
-    whole[:n, :n], whole[n:, :s], whole[n:, n:] = controller.A, np.outer(b, sensor.c), A
-    drift = np.concatenate([controller.slow_rate[:-1], np.zeros(m), controller.slow_rate[-1:]])
-    if is_slow:
-        drift[n : n + m] += gain * (c @ A)
-        drift[:s] += gain * (c @ b) * sensor.c
-        drift[-1] += gain * (c @ b) * sensor.d
-    direct = np.zeros(n)
-    direct[:s] = gain * d * sensor.c
-    return ControllerStateSpace(
-        whole, np.concatenate([controller.b, b * sensor.d]), np.concatenate([controller.c + direct, gain * c]),
-        controller.d + gain * d * sensor.d, np.concatenate([controller.is_slow, np.full(m, is_slow)]), drift,
-    )  # fmt: skip
-
 
 # A sampled controller in steps: its blocks by Tustin's rule, sensor and servo exactly, the dead time as a queue.
 
@@ -113,15 +31,12 @@ _FINEST = 0.2  # of the dead time, the longest step where there is one; chosen
 
 
 def fastest_motion(loop: TransferLoop) -> float:
-    """Return the fastest pole [rad/s] that steps of a simulation follow: of the loop, where it samples of the plant."""
-    poles = loop.closed_loop_poles if loop.sampling is None else loop.plant.poles
-    return float(np.abs(poles).max(initial=_SLOWEST_POLE))
+    """Return the plant's fastest pole [rad/s], which steps of a simulation follow between samples."""
+    return float(np.abs(loop.plant.poles).max(initial=_SLOWEST_POLE))
 
 
-def simulation_step(sampling: Sampling | None, longest: float) -> float:
+def simulation_step(sampling: Sampling, longest: float) -> float:
     """Return the longest step [s] up to `longest` that divides the sample time, and the dead time as well as can be."""
-    if sampling is None:
-        return longest
     T, dead = sampling.sample_s, sampling.dead_time
     least = max(1, math.ceil(T / min(longest, _FINEST * dead if dead else math.inf) - _WHOLE))
     counts = range(least, least + _TRIED)
@@ -155,17 +70,17 @@ def sampled_laws(loop: TransferLoop, gains: Array, dt: float) -> tuple[Array, Ma
 
     The last entries are the queue of the dead time; the noise of the samples stands behind it.
     """
-    assert loop.sampling is not None
-    T, every = loop.sampling.sample_s, steps_a_sample(loop.sampling, dt)
-    sensor, sensor_order = _sensor(in_series("sensor", loop.sensor), dt)
-    servo, servo_order = _servo(in_series("servo", loop.servo), dt)
+    sampling = loop.required_sampling
+    T, every = sampling.sample_s, steps_a_sample(sampling, dt)
+    sensor, sensor_order = _stepped(in_series("sensor", loop.sensor), dt)
+    servo, servo_order = _stepped(in_series("servo", loop.servo), dt)
     holds, sign = holding_terms(loop)
     terms = [
         _block(term.block, T, float(gain), sign if held else 0.0)
         for gain, term, held in zip(gains, loop.terms, holds, strict=True)
     ]
     blocks = np.concatenate([*terms, *(_block(block, T, 1.0, 0.0) for block in loop.filters)])
-    queue = round(loop.sampling.dead_time / dt)
+    queue = round(sampling.dead_time / dt)
     servo_at = feedback.HEAD_SIZE + len(sensor)
     blocks_at = servo_at + len(servo)
     queue_at = blocks_at + len(blocks)
@@ -181,7 +96,7 @@ def sampled_laws(loop: TransferLoop, gains: Array, dt: float) -> tuple[Array, Ma
         feedback.QUEUE: queue_at,
         feedback.QUEUE_SIZE: queue,
         feedback.NOISE: queue_at + queue,
-        feedback.RESOLUTION: loop.sampling.resolution,
+        feedback.RESOLUTION: sampling.resolution,
     }
     return np.concatenate([sensor, servo, blocks, np.zeros(queue)]), values
 
@@ -193,21 +108,12 @@ def _block(block: Block, T: float, gain: float, holds: float) -> Array:
 
 
 @lru_cache(maxsize=_KEPT)
-def _sensor(block: Block, dt: float) -> tuple[Array, int]:
-    """Return a sensor for an input that runs straight over each step (Franklin, Powell & Workman 1998, section 6.3)."""
+def _stepped(block: Block, dt: float) -> tuple[Array, int]:
+    """Return a block for an input that runs straight over each step (Franklin, Powell & Workman 1998, section 6.3)."""
     A, b, c, d = controllable_form(block)
     E, before, after = straight_step(A, b, dt)
     n = len(b)
     return np.concatenate([E.T.ravel(), before, after, c, [d], np.zeros(2 * n + 1)]), n
-
-
-@lru_cache(maxsize=_KEPT)
-def _servo(block: Block, dt: float) -> tuple[Array, int]:
-    """Return a servo for an input that is held over each step."""
-    A, b, c, d = controllable_form(block)
-    E, held = held_step(A, b, dt)
-    n = len(b)
-    return np.concatenate([E.T.ravel(), held, c, [d], np.zeros(2 * n)]), n
 
 
 # A linear loop simulated in time: output, actuator and actuator rate, met by one series of the disturbance.
@@ -237,7 +143,7 @@ def loop_record(states: StateSpace, gains: Array, disturbance: Array, dt: float)
     return out
 
 
-# A loop in time: a controller, exactly discretised or sampled, on any model, with the limits of its actuator.
+# A loop in time: a controller that samples, on any model, with the limits of its actuator.
 
 REFERENCE = "reference"
 
@@ -324,8 +230,7 @@ class ClosedLoop:
             object.__setattr__(self, name, frozen(given if given.size else np.zeros(size)))
             if getattr(self, name).shape != (size,) or not np.all(np.isfinite(given)):
                 raise InputError(f"{where} needs {size} finite values for '{name}'")
-        if self.loop.sampling is not None:
-            steps_a_sample(self.loop.sampling, self.dt)
+        steps_a_sample(self.loop.required_sampling, self.dt)
         if np.shape(self.gains) != (len(self.loop.terms),) or not np.all(np.isfinite(self.gains)):
             raise InputError(f"{where} needs {len(self.loop.terms)} finite gains: {', '.join(self.loop.gains.names)}")
 
@@ -342,7 +247,7 @@ class ClosedLoop:
         Args:
             reference: (n,), absolute, as the output; by default the output's trim.
             fed_forward: (n,), added to the order of the actuator before its limits; by default nothing.
-            noise: of each sample that a sampled controller takes of the output; by default of its rms, from seed 0.
+            noise: of each sample that the controller takes of the output; by default of its rms, from seed 0.
 
         Raises:
             InputError: series of other lengths or with gaps.
@@ -360,18 +265,13 @@ class ClosedLoop:
             )
         memory = self.controller_memory(disturbance, limits, wanted, added, noise)
         states, _ = commanded(
-            self.model, self.command, memory, self.dt, count, self.start, self.inputs, f"loop '{self.loop.name}'"
+            self.model, sampled_controller, memory, self.dt, count, self.start, self.inputs, f"loop '{self.loop.name}'"
         )
         return states, memory[self._angles(memory, count)]
 
-    @property
-    def command(self) -> Callable[..., None]:
-        """Return what steers: the controller in continuous time, or the sampled one."""
-        return feedback.linear_controller if self.loop.sampling is None else sampled_controller
-
     def _angles(self, memory: Array, count: int) -> slice:
         """Return where the actuator's angles at the samples stand."""
-        first = int(memory[feedback.SERIES]) + 3 * count + 2
+        first = int(memory[feedback.SERIES]) + 3 * count
         return slice(first, first + count)
 
     def controller_memory(
@@ -382,16 +282,15 @@ class ClosedLoop:
         fed_forward: Array,
         noise: Array | None = None,
     ) -> Array:
-        """Return the memory of `command` for series (n,), checked by the caller.
+        """Return the memory of `sampled_controller` for series (n,), checked by the caller.
 
-        noise: of each sample that a sampled controller takes.
+        noise: of each sample that the controller takes.
         """
-        count, sampling = len(disturbance), self.loop.sampling
-        body, own = self._laws
-        if sampling is not None:
-            samples = -(-count // steps_a_sample(sampling, self.dt))
-            heard = sample_noise(sampling, samples, _NOISE_SEED) if noise is None else noise[:samples]
-            body, own = np.concatenate([body, heard]), {**own, feedback.SAMPLE_SLEW: limits.rate * sampling.sample_s}
+        count, sampling = len(disturbance), self.loop.required_sampling
+        laws, own = self._laws
+        samples = -(-count // steps_a_sample(sampling, self.dt))
+        heard = sample_noise(sampling, samples, _NOISE_SEED) if noise is None else noise[:samples]
+        body = np.concatenate([laws, heard])
         place, disturbed = self._input_index(self.actuator), self._input_index(self.disturbance_input)
         values = {
             feedback.COUNT: count,
@@ -402,6 +301,7 @@ class ClosedLoop:
             feedback.EFFECT: self._sign(place) * self.effectiveness,
             feedback.LIMIT: limits.limit,
             feedback.SLEW: limits.rate * self.dt,
+            feedback.SAMPLE_SLEW: limits.rate * sampling.sample_s,
             feedback.STALL: limits.stall,
             feedback.LOSS: limits.loss,
             feedback.SERIES: feedback.HEAD_SIZE + len(body),
@@ -411,17 +311,12 @@ class ClosedLoop:
         head[list(values)] = list(values.values())
         trim = self.inputs[disturbed] if disturbed not in (-1, place) else 0.0
         met = trim + self._sign(disturbed) * hold_equivalent(np.asarray(disturbance, dtype=np.float64))
-        series = (reference, reference[-1:], met, fed_forward, fed_forward[-1:], np.zeros(count + 1))
-        return np.concatenate([head, body, *series])
+        return np.concatenate([head, body, reference, met, fed_forward, np.zeros(count + 1)])
 
     @cached_property
     def _laws(self) -> tuple[Array, Mapping[int, float]]:
-        """What `command` reads of the loop behind the head, and the head's entries for it, the same in every run."""
-        if self.loop.sampling is not None:
-            return sampled_laws(self.loop, self.gains, self.dt)
-        made = controller_state_space(self.loop, self.gains)
-        n, laws = len(made.b), (made.discretised(self.dt, is_holding=held) for held in (False, True))
-        return np.concatenate([*laws, made.slow_rate, np.zeros(2 * n)]), {feedback.CONTROLLER_ORDER: float(n)}
+        """What `sampled_controller` reads of the loop, and the entries of its head, the same in every run."""
+        return sampled_laws(self.loop, self.gains, self.dt)
 
     def _input_index(self, name: str) -> int:
         """Return the place of an input; -1 of none."""

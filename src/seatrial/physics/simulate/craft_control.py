@@ -124,7 +124,7 @@ def follow_track(
     heading = float(closed.start[model.states.index(closed.output)])
     memory = closed.controller_memory(disturbance, limits, np.full(count, heading), np.zeros(count))
     head = np.zeros(feedback.TRACK_HEAD)
-    interval = closed.dt if closed.loop.sampling is None else closed.loop.sampling.sample_s
+    interval = closed.loop.required_sampling.sample_s
     values = {
         feedback.NORTH: model.states.index("x0" if math.isfinite(track.corner) else "y0"),
         feedback.EAST: model.states.index("y0"),

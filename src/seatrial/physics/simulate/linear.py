@@ -16,6 +16,7 @@ from seatrial.physics.simulate.batch import INPUT_KINDS, SegmentBatch
 # Affine models by exact propagators: what `SegmentBatch` gives, without the error of a Runge-Kutta step.
 
 _SAME_SAMPLE = 1e-9  # samples by which a place is rounded; chosen
+_NONE: Index = np.empty(0, dtype=np.int64)
 SUBSTEPS = 8  # straight pieces of a spline in one sample; chosen
 
 
@@ -43,6 +44,12 @@ def discrete_matrices(
     slopes = zip(*(slopes for _, slopes in made), strict=True)
     de, dg0, dg1, dc, dd = (np.array([s.transpose(1, 2, 0) for s in column], order="C") for column in slopes)
     return DiscreteMatrices(e, g0, g1, c, d, (de, dg0, dg1, dc, dd))
+
+
+def exact_step(model: Model, h: float) -> tuple[Array, Array, Array]:
+    """Return e, g0 and g1 of an affine model over a step h [s] at its own parameters."""
+    made, _ = _matrices_of_one(model, model.parameters.values, h, np.arange(len(model.states)), _NONE)
+    return made[0], made[1], made[2]
 
 
 def _matrices_of_one(
@@ -199,7 +206,6 @@ def batch_class(model: Model) -> type[SegmentBatch]:
 # Affine models under harmonic input: frequency response, and the exact motion in a sum of harmonics.
 
 Complex = NDArray[np.complex128]
-_NONE: Index = np.empty(0, dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False)

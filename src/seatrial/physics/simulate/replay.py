@@ -169,17 +169,20 @@ def commanded(
 ) -> tuple[Array, Array]:  # fmt: skip
     """Return states (n, nx) and inputs (n, nu) of a model that a command steers for `count` steps of dt [s].
 
+    Steps of an affine model are exact, of another those of Runge and Kutta.
     memory: of the command, which writes in it; start: (nx,); inputs: (nu,), held but for what the command sets.
 
     Raises:
         DivergedError: the subject runs away; when, and which state.
     """
     from seatrial.numerics.kernels.feedback import steer
+    from seatrial.physics.simulate.linear import exact_step
 
     states, applied = np.empty((count, len(start))), np.empty((count, len(inputs)))
     lost = steer(
-        model.compiled.rates, command, start.copy(), inputs.copy(), model.parameters.values, memory, dt, states, applied
-    )
+        model.compiled.rates, command, start.copy(), inputs, model.parameters.values, memory, dt, states, applied,
+        *((exact_step(model, dt),) if model.is_affine else ()),
+    )  # fmt: skip
     last = count if lost < 0 else lost + 1
     time = frozen(dt * np.arange(last))
     require_bounded(model, time, states[:last], subject)
