@@ -22,7 +22,7 @@ from measure import Line, at_most, machine
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 FLOOR = "import numpy, scipy.linalg, numba, pandas, pydantic, typer, rich, jinja2"
-CHECK_LIMIT, IDENTIFY_LIMIT = 1.3, 3.3  # multiples of the floor, required
+CHECK_LIMIT, IDENTIFY_LIMIT = 1.1, 3.0  # multiples of the floor, required
 REPEATS = 3
 # phase -> functions whose time it is, as module and name; what none of them holds is import or rest
 PHASES = {

@@ -1,9 +1,14 @@
 """The page of each kind of result; only the modules that render that kind are imported."""
 
+from typing import TYPE_CHECKING
+
 from seatrial.core import results
 
+if TYPE_CHECKING:
+    from seatrial.data.folder.result_folder import Result
 
-def report_page(result: "results.Summarised | results.CampaignSummary") -> str:
+
+def report_page(result: "Result | results.CampaignSummary | results.Benchmark") -> str:
     """Return the self-contained HTML page of a result; nothing is computed."""
     match result:
         case results.Fit():

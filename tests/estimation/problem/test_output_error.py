@@ -1,6 +1,7 @@
 """The output-error cost, its gradient and its Gauss-Newton model, against central differences."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,12 +9,13 @@ from numpy.typing import NDArray
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Prior, Record
+from seatrial.estimation.problem import output_error
 from seatrial.estimation.problem.output_error import Nuisance, OutputError
 from seatrial.estimation.problem.segments import cut_segments
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.waterjet import waterjet
 from seatrial.physics.simulate import replay
-from seatrial.physics.simulate.batch import InputCorrection
+from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
 
 Array = NDArray[np.float64]
 OUTPUTS = ("u", "v", "r", "psi", "x0", "y0")
@@ -184,11 +186,38 @@ def test_starts_skip_what_was_not_measured(problem: OutputError) -> None:
     assert np.isnan(problem.data.measured[last, 0])
 
 
-def test_workers_change_no_bit(problem: OutputError) -> None:
+def test_workers_change_no_bit(problem: OutputError, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(output_error, "_ROWS_PER_RANGE", 100)  # so that two of them have their fill
     shared, local = point(problem)
-    one, two = (replace(problem, workers=n).normal(shared, local) for n in (1, 2))
+    one, two = (replace(problem, workers=n, data=replace(problem.data)).normal(shared, local) for n in (1, 2))
     np.testing.assert_array_equal(one.hessian, two.hessian)
     np.testing.assert_array_equal(one.gradient, two.gradient)
+
+
+@pytest.mark.parametrize("most", [10**9, 0])
+def test_slopes_at_a_point_are_worked_out_once(
+    problem: OutputError, monkeypatch: pytest.MonkeyPatch, most: int
+) -> None:
+    monkeypatch.setattr(output_error, "_MOST_KEPT", most)
+    data, calls = replace(problem.data), list[Array]()
+    plain = SegmentBatch.differentiate
+
+    def counted(batch: SegmentBatch, *arguments: Any) -> Any:
+        calls.append(arguments[2])
+        return plain(batch, *arguments)
+
+    monkeypatch.setattr(SegmentBatch, "differentiate", counted)
+    shared, local = point(problem)
+    known = replace(problem, data=data)
+    louder, shifted = replace(known, noise=3.0 * NOISE), shared + 1e-3 * np.abs(shared)
+    finer = replace(known, substeps=2)
+    at = [(known, shared), (louder, shared), (known, shifted), (louder, shifted), (finer, shifted)]
+    found = [one.normal(where, local) for one, where in at]
+    assert len(calls) == (3 if most else len(at))
+    for (one, where), normal in zip(at, found, strict=True):
+        again = replace(one, data=replace(data)).normal(where, local)
+        np.testing.assert_array_equal(normal.hessian, again.hessian)
+        np.testing.assert_array_equal(normal.gradient, again.gradient)
 
 
 def test_normal_equations_of_runs_add_up(problem: OutputError) -> None:

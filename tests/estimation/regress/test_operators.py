@@ -186,6 +186,18 @@ def weak() -> WeakForm:
     return WeakForm(oscillator(), (x,), (np.zeros((600, 1)),), DT, 5.0, np.ones(2))
 
 
+def test_a_weak_form_is_linearised_once_at_a_point(weak: WeakForm) -> None:
+    point = np.array([p.value for p in weak.model.parameters.free])
+    residuals, jacobian = weak.linearised(point)
+    louder = weak.weighted(2.0 * weak.residual_sd)
+    assert louder.linearised(point)[0] is residuals and louder.cost(point, np.zeros((0, 0))) > 0.0
+    moved = weak.linearised(point + 0.1)[0]
+    assert not np.array_equal(moved, residuals)
+    shorter = replace(weak, states=(weak.states[0][:300],), inputs=(weak.inputs[0][:300],))
+    assert len(shorter.linearised(point)[0]) < len(residuals)
+    np.testing.assert_array_equal(weak.linearised(point)[1], jacobian)
+
+
 def test_windows_cover_the_record_half_overlapping() -> None:
     found = window_bounds(101, 20)
     assert found[0] == (0, 40)

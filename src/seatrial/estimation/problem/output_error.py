@@ -272,14 +272,14 @@ class OutputError:
         if self.data.measured.size * (self.size + len(self.starts)) > _MOST_KEPT:
             return self._differentiated(bounds, start, values, corrections, by_actuator)
         point, last = (self._simulated_by, *(a.tobytes() for a in (start, values, corrections))), self.data.last_slopes
-        known = next((one for one in last if one.point == point), None) or KnownSlopes(point, {})
-        last[:] = [known]
-        if bounds not in known.found:
-            found = self._differentiated(bounds, start, values, corrections, by_actuator)
-            for array in found:
-                array.setflags(write=False)
-            known.found[bounds] = found
-        return known.found[bounds]
+        here = last[0] if last and last[0].point == point else KnownSlopes(point, {})
+        last[:] = [here]
+        if bounds not in here.slopes:
+            outputs, slopes = self._differentiated(bounds, start, values, corrections, by_actuator)
+            outputs.setflags(write=False)
+            slopes.setflags(write=False)
+            here.slopes[bounds] = outputs, slopes
+        return here.slopes[bounds]
 
     @cached_property
     def _simulated_by(self) -> tuple[Hashable, ...]:

@@ -216,7 +216,7 @@ class KnownSlopes:
     """What is known of a point: whatever decides it, and outputs with their derivatives by segments, first to last."""
 
     point: tuple[Hashable, ...]
-    found: dict[tuple[int, int], tuple[Array, Array]]
+    slopes: dict[tuple[int, int], tuple[Array, Array]]
 
 
 @dataclass(frozen=True, eq=False)

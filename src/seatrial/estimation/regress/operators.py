@@ -164,7 +164,7 @@ class WeakForm:
         states, inputs: one array a run, (rows, nx) and (rows, nu), model's signs.
         half_width: of the windows, s.
         residual_sd: standard deviation of each rate's windowed residual, shape (nx,).
-        known: the point that was linearised last, as bytes -> what was found; it does not depend on `residual_sd`.
+        linearisation: of the point that was looked at last, as bytes; it does not depend on `residual_sd`.
     """
 
     model: Model
@@ -173,13 +173,13 @@ class WeakForm:
     dt: float
     half_width: float
     residual_sd: Array
-    known: dict[bytes, tuple[Array, Array]] = field(default_factory=dict, init=False)
+    linearisation: dict[bytes, tuple[Array, Array]] = field(default_factory=dict, init=False)
 
     def weighted(self, residual_sd: Array) -> "WeakForm":
         """Return it with other standard deviations of the residuals."""
-        made = replace(self, residual_sd=residual_sd)
-        made.known.update(self.known)
-        return made
+        weighted = replace(self, residual_sd=residual_sd)
+        weighted.linearisation.update(self.linearisation)
+        return weighted
 
     @property
     def _free(self) -> Sequence[int]:
@@ -208,11 +208,11 @@ class WeakForm:
 
     def linearised(self, point: Array) -> tuple[Array, Array]:
         """Windowed residuals (windows, nx) and their derivatives (windows, nx, free), worked out once at a point."""
-        if (key := point.tobytes()) not in self.known:
-            found = self._linearised(point)
-            self.known.clear()
-            self.known[key] = found
-        return self.known[key]
+        if (key := point.tobytes()) not in self.linearisation:
+            linearised = self._linearised(point)
+            self.linearisation.clear()
+            self.linearisation[key] = linearised
+        return self.linearisation[key]
 
     def _linearised(self, point: Array) -> tuple[Array, Array]:
         values = self.model.parameters.with_free_values(point).values

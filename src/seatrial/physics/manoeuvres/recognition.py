@@ -88,10 +88,10 @@ class ObservedManoeuvre:
         Raises:
             InputError: channel psi or delta is missing or holds fewer than two values.
         """
-        return record.computed(cls._of)
+        return record.computed(cls._recognised)
 
     @classmethod
-    def _of(cls, record: Record) -> "ObservedManoeuvre":
+    def _recognised(cls, record: Record) -> "ObservedManoeuvre":
         return cls(record, _heading(record), _without_gaps(record, to_starboard(record, "delta")))
 
     def transferred_to(self, record: Record) -> "ObservedManoeuvre":

@@ -2,12 +2,14 @@
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
 
 from seatrial.core.values import Array
 from seatrial.core.values.arrays import Mask, mask_intervals
 
+Values = TypeVar("Values", Array, Mask)
 # rad of the smallest turn: waves yaw less than the larger, headings in whole degrees step by less than the smaller; a
 # log that turns less than twice the larger is judged by half of what it turns; chosen
 _LARGEST_THRESHOLD, _SMALLEST_THRESHOLD = np.radians(8.0), np.radians(3.0)
@@ -114,10 +116,11 @@ def _steady(psi: Array, window: int, band: float) -> list[tuple[int, int]]:
     width = 2 * half + 1
     is_inside: Mask = _over_windows(np.maximum, psi, width) - _over_windows(np.minimum, psi, width) < band
     # a place is steady where any window about it is; none reaches beyond the record
-    return mask_intervals(_over_windows(np.logical_or, np.pad(is_inside, 2 * half), width))
+    is_steady: Mask = _over_windows(np.maximum, np.pad(is_inside, 2 * half), width)
+    return mask_intervals(is_steady)
 
 
-def _over_windows(extreme: np.ufunc, values: Array | Mask, width: int) -> Array | Mask:
+def _over_windows(extreme: np.ufunc, values: Values, width: int) -> Values:
     """Return the extreme of each `width` neighbouring values, (n - width + 1,), by windows of which each is doubled."""
     length, doubled = 1, values
     while 2 * length <= width:

@@ -433,9 +433,7 @@ def _plain_numbers(data: bytes, start: int, separator: str) -> list[np.ndarray] 
     is_whole = np.all(table == np.round(table), axis=0)
     for k in np.flatnonzero(is_whole).tolist():
         is_whole[k] = not set().union(*(row.split(delimiter)[k] for row in rows)) & {*".eE"}
-    return [
-        column.astype(np.int64) if whole else column for column, whole in zip(table.T.copy(), is_whole, strict=True)
-    ]
+    return [table[:, k].astype(np.int64) if is_whole[k] else table[:, k].copy() for k in range(table.shape[1])]
 
 
 def _data_frame(
