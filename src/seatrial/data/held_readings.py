@@ -17,7 +17,9 @@ _JUMPS_SHARE = 0.3  # of its steps that must be jumps: others may be any coarse 
 _SLOWER = 1.5  # rows between two readings, from which on a channel is slower than its table; chosen
 # rows for which a frozen channel stays at least, and how many times as far as it usually moves it then jumps; chosen
 _FROZEN_ROWS, _CATCHES_UP = 5, 3.0
-_APART = 3.0  # times the longest of all other stays, from which a stay that ends with a jump is a frozen one; chosen
+# times the longest of all other stays from which on a stay is like no other, and how far such a one then jumps at least
+# of what the channel usually moves: an instrument that stood still with its ship begins slowly; chosen
+_APART, _GOES_ON = 3.0, 0.5
 _USUAL = 0.98  # quantile of steps and stays that are usual; chosen: few are of a frozen channel
 _LOST = 1.5  # steps of the table, above which a row is missing; chosen
 _SAME_ROWS = 0.5  # share of the steps of the rarer of two channels in rows where the other steps too; chosen
@@ -31,7 +33,7 @@ def slower_channels(values: Mapping[str, Array], time: Array) -> dict[str, Mask]
     together, or in turn. A stay longer than the usual one is of new readings of the same value, one after the other.
 
     A channel of every row that stays and then jumps by far more than it ever moves was frozen for so long, and so was
-    one that jumps at all where it stays far longer than ever else.
+    one that jumps by about as much where it stays far longer than ever else.
 
     Args:
         values: readings (n,) of one table, in the units of its cells, angles without jumps of a turn; NaN where there
@@ -130,7 +132,7 @@ def _unfrozen(columns: Sequence[Array]) -> Mask | None:
     moving = [values[read_rows] for values in columns if np.ptp(values[read_rows]) > 0.0]
     sizes = np.max([np.abs(np.diff(values))[steps - 1] / _usual_step(values) for values in moving], axis=0)
     jumps = np.max([np.abs(_step_sizes(values, steps)) for values in moving], axis=0) > _JUMP
-    is_apart = jumps & (stays >= _apart(stays))
+    is_apart = jumps & (sizes > _GOES_ON) & (stays >= _apart(stays))
     caught_up = np.flatnonzero(((sizes > _CATCHES_UP) | is_apart) & (stays >= longest))
     if not caught_up.size:
         return None
