@@ -133,6 +133,7 @@ def _unfrozen(columns: Sequence[Array]) -> Mask | None:
     sizes = np.max([np.abs(np.diff(values))[steps - 1] / _usual_step(values) for values in moving], axis=0)
     jumps = np.max([np.abs(_step_sizes(values, steps)) for values in moving], axis=0) > _JUMP
     is_apart = jumps & (sizes > _GOES_ON) & (stays >= _apart(stays))
+    is_apart[0] = False  # at rest from the first row on
     caught_up = np.flatnonzero(((sizes > _CATCHES_UP) | is_apart) & (stays >= longest))
     if not caught_up.size:
         return None

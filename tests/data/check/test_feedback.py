@@ -44,13 +44,14 @@ def test_a_controller_is_found(seed: int) -> None:
     assert "prediction error with a disturbance model" in finding.message
 
 
-def test_a_controller_is_found_whose_orders_are_coarse() -> None:
-    """From sample to sample the steps of its orders hide what it answers: means of samples show it."""
-    record = steered(2, is_closed=True, gust=np.radians(0.4), is_coarse=True)
-    half = Record.from_arrays("run", record.time[::5], {n: record[n][::5] for n in ("delta", "psi")})
+@pytest.mark.parametrize("seed", range(3))
+def test_a_controller_is_found_whose_orders_are_coarse(seed: int) -> None:
+    """Their steps hide most of what it answers."""
+    record = steered(seed, is_closed=True, gust=np.radians(0.8), is_coarse=True)
+    half = Record.from_arrays("run", record.time[::2], {n: record[n][::2] for n in ("delta", "psi")})
     (test,) = feedback_tests(half)
     assert test.has_feedback
-    assert test.lag > half.dt
+    assert test.correlation < 0.0
 
 
 @pytest.mark.parametrize("seed", range(3))

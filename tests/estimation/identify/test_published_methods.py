@@ -266,7 +266,10 @@ def test_channels_count_by_their_noise_where_all_are_stated(repository: Path) ->
 
 
 def test_without_the_own_estimate_a_method_stands_alone(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(identify.__globals__, "STRATEGIES", {})  # no estimate of the package's own can be made
+    def none_is_made(_: object) -> Fit:
+        raise AssertionError("the package's own estimate was made")
+
+    monkeypatch.setitem(identify.__globals__, "STRATEGIES", dict.fromkeys(Situation, none_is_made))
     trial = example(repository, "heave_pitch", EstimateMethod.IWHO)
     alone = identify(replace(trial, estimate=replace(trial.estimate, own_estimate=OwnEstimate.NONE)), seed=3)
     assert alone.reference is None and alone.search is not None

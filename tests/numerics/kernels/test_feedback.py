@@ -1,4 +1,4 @@
-"""A command in the loop: linear controllers, and a track followed."""
+"""A command in the loop: laws, limits, and a track followed."""
 
 import math
 
@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from seatrial.numerics.kernels import feedback
-from seatrial.numerics.kernels.feedback import clamp, controller_size, effective_angle, track_follower
+from seatrial.numerics.kernels.feedback import clamp, effective_angle, law_size, track_follower
 
-# Parts of the linear controller: its size, its limits, and what stall leaves of an angle.
+# Parts of a controller: the size of a law, its limits, and what stall leaves of an angle.
 
 
-def test_a_controller_of_order_n_takes_its_matrices() -> None:
+def test_a_law_of_order_n_takes_its_matrices() -> None:
     n = 3
-    transition, gains, order_row = n * n, 2 * n, n + 2
-    assert controller_size(n) == transition + gains + order_row
+    transition, gains, row = n * n, 2 * n, n + 1
+    assert law_size(n) == transition + gains + row
 
 
 @pytest.mark.parametrize(("value", "cut"), [(0.5, 0.5), (2.0, 1.0), (-2.0, -1.0)])
@@ -34,12 +34,22 @@ def test_beyond_stall_the_lift_falls_to_nothing(angle: float, effect: float) -> 
 def test_the_order_aims_at_a_point_ahead_on_the_leg(north: float, error: float, course: float) -> None:
     """A corner to the east at 100 m, taken 5 m before it; 10 m to the east of the first leg."""
     count, delta = 2, 10.0
-    series = feedback.HEAD_SIZE + 2 * feedback.controller_size(0) + 1
-    block = series + 4 * count + 3  # behind reference, disturbance, feed-forward and angles
+    sensor, servo, noise = feedback.HEAD_SIZE + np.array([0, law_size(0) + 1, 2 * law_size(0) + 1])
+    series = noise + count
+    block = series + 4 * count + 1  # behind reference, disturbance, feed-forward and angles
     memory = np.zeros(block + feedback.TRACK_HEAD + count)
-    head = {feedback.COUNT: count, feedback.SERIES: series, feedback.DISTURBED_INPUT: -1, feedback.EFFECT: 1.0}
-    unlimited = (feedback.LIMIT, feedback.SLEW, feedback.STALL)
-    memory[[*head, *unlimited]] = [*head.values(), *[math.inf] * 3]
+    head = {
+        feedback.COUNT: count,
+        feedback.SERIES: series,
+        feedback.EVERY: 1,
+        feedback.SENSOR: sensor,
+        feedback.SERVO: servo,
+        feedback.NOISE: noise,
+        feedback.DISTURBED_INPUT: -1,
+        feedback.EFFECT: 1.0,
+    }
+    unlimited = (feedback.LIMIT, feedback.SLEW, feedback.SAMPLE_SLEW, feedback.STALL)
+    memory[[*head, *unlimited]] = [*head.values(), *[math.inf] * len(unlimited)]
     track = {
         feedback.NORTH: 1,
         feedback.EAST: 2,
