@@ -99,3 +99,9 @@ def test_where_the_gradient_errs_in_a_narrow_valley_the_cost_leads_to_its_least(
     assert normal.cost > 4.0 and left > 1.0
     assert end.normal.cost < 1e-6 and end.decrement < 0.02
     np.testing.assert_allclose(end.point, valley.least, atol=0.02)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_step_beyond_all_numbers_is_infinite_and_no_warning() -> None:
+    coordinates = newton_refinement._Coordinates(np.array([True, False]))
+    assert coordinates.moved(np.array([1e-6, 2.0]), np.array([800.0, 1.0])).tolist() == [np.inf, 3.0]

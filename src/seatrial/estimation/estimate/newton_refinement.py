@@ -110,8 +110,9 @@ class _Coordinates:
         return low, high
 
     def moved(self, point: Array, step: Array) -> Array:
-        """Return the point after a step."""
-        return np.where(self.is_log, point * np.exp(np.where(self.is_log, step, 0.0)), point + step)
+        """Return the point after a step; infinite, and so without a likelihood, where no number is so large."""
+        with np.errstate(over="ignore"):
+            return np.where(self.is_log, point * np.exp(np.where(self.is_log, step, 0.0)), point + step)
 
     def way(self, point: Array, end: Array) -> Array:
         """Return the step from one point to another."""
