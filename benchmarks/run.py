@@ -15,6 +15,7 @@ from pathlib import Path
 
 import against_optimisers
 import against_shipmmg
+import autopilot_days
 import autopilots
 import campaign
 import changed_ships
@@ -76,6 +77,7 @@ BENCHMARKS: dict[str, Callable[[], list[Line]]] = {
     "criteria": criteria.run,
     "timing": timing.run,
     "loggers": loggers.run,
+    "autopilot_days": autopilot_days.run,
     "kvlcc2_zigzags": kvlcc2_zigzags.run,
     "estimation_folds": estimation_folds.run,
     "prediction_bands": prediction_bands.run,

@@ -41,9 +41,9 @@ def after_fit(fit: "Fit", folder: Path, trial: Path | None = None) -> str:
         return f'name a run to hold out in {in_shell(trial)}, validate = "...", and identify again'
     if is_missed(fit):
         cause = (
-            "the disturbance carries the craft as far: judge the model over short windows"
+            "the disturbance carries the craft as far, so judge the model over short windows"
             if is_carried(fit)
-            else ("the held-out run is not predicted, so correct the fit before it is used")
+            else "the held-out run is not predicted, so correct the fit before it is used"
         )
         return f"docs/bad-fit.md, By symptom: {cause}"
     model = in_shell(folder / "model.toml")

@@ -263,7 +263,6 @@ MAX_ERRORS = 2
 ONE_SIDED = 1.25
 # rad below which the rudder is not over
 LEAST_RUDDER = math.radians(0.5)
-_CARRIED_CLAUSE = "the estimated disturbance alone leaves most of that"
 _MAIN_ERRORS = ("psi_deg", "position_m", "z", "theta_deg", "phi_deg")
 
 
@@ -323,10 +322,15 @@ def _one_run_clauses(p: Prediction, predictions: Sequence[Prediction], longest: 
         return f"Does not predict {run}: the simulation diverges after {duration(p.divergence.seconds)}", ""
     largest, errors = judged_share(p, longest), _judged_errors(p, longest)
     if largest is not None and largest.grade is Grade.NOT:
-        return f"Does not predict {run}: {errors}", _CARRIED_CLAUSE if longest == math.inf else ""
+        return f"Does not predict {run}: {errors}", _carried_clause(longest)
     grade = "" if largest is None else f" {largest.grade}"
     repeat = "it repeats a fitted manoeuvre" if repeated_runs(p, predictions) else ""
     return f"Predicts {run}{grade}{f': {errors}' if errors else ''}", repeat
+
+
+def _carried_clause(longest: float | None) -> str:
+    """That a disturbance explains a miss; empty where none carries the craft so far, by `longest_judged`."""
+    return "the estimated disturbance alone leaves most of that" if longest == math.inf else ""
 
 
 def _judged_errors(p: Prediction, longest: float | None) -> str:
@@ -366,8 +370,8 @@ def _several_runs_clauses(
         verb = "Does not predict" if worst is Grade.NOT else "Predicts poorly"
         graded = _graded([grades.get(p.record) for p in others])
         remainder = f"the other{'s' if len(others) > 1 else ''}{graded}" if graded else ""
-        remainder = remainder or (_CARRIED_CLAUSE if longest == math.inf else "")
-        return f"{verb} {len(names)} of {len(held)} held-out runs{_worst_errors(missed, longest)}", remainder
+        score = f"{verb} {len(names)} of {len(held)} held-out runs{_worst_errors(missed, longest)}"
+        return score, remainder or _carried_clause(longest)
     repeats = sum(bool(repeated_runs(p, predictions)) for p in held)
     repeat = f"{repeats} {'repeats' if repeats == 1 else 'repeat'} a fitted manoeuvre" if repeats else ""
     return f"Predicts {len(held)} held-out runs{_graded(list(grades.values()))}{_worst_errors(held, longest)}", repeat
