@@ -47,7 +47,7 @@ def day(seed: int, step_deg: float) -> Record:
             rows.append((psi, delta))
     unit = math.radians(step_deg)
     shown = np.round(np.array(rows) / unit) * unit
-    time = A_SAMPLE * STEP * np.arange(len(rows))
+    time = A_SAMPLE * STEP * np.arange(len(rows), dtype=np.float64)
     return Record.from_arrays(f"day {seed}", time, {"psi": shown[:, 0], "delta": shown[:, 1]})
 
 
