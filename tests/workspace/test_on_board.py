@@ -187,9 +187,11 @@ def test_what_was_missed_while_the_line_was_down_is_fetched(browser: "Browser", 
         follower.show(snapshot, SampleCounts())
     with opened(browser, address) as (window, _):
         window.locator(".facts").get_by_text("9.5 s").wait_for()
+        follower.show(snapshots[20], SampleCounts())
+        window.locator(".facts").get_by_text("10.0 s").wait_for()  # what comes after the first answer: the page listens
         follower.workspace.events._send("")  # as to a page that does not read fast enough
         window.get_by_text("seatrial no longer answers").wait_for()
-        for snapshot in snapshots[20:]:
+        for snapshot in snapshots[21:]:
             follower.show(snapshot, SampleCounts())
         window.locator(".facts").get_by_text("30.0 s").wait_for()
         assert len(numbers_of(window, ".values")[0]) == 61

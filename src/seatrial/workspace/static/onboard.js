@@ -12,13 +12,19 @@ export async function showOnBoard(node, app) {
   if (!/^\[follow\]/m.test(app.state.text)) { node.append(...sourceForm(app)); return; }
   const early = [];
   let view = null;
-  app.on("onboard", content => view ? view.take(content) : early.push(content));
+  app.on("onboard", content => {
+    view?.find();
+    view ? view.take(content) : early.push(content);
+  });
   const stream = await ask("onboard"), isFollowed = "name" in stream && !stream.is_over;
   node.append(stream.name === "" ? h("p", { class: "note" }, "The command in the terminal follows the stream; Ctrl-C there ends it.") : controls(app, isFollowed), jobList(app, "follow"));
   if ("name" in stream) {
     view = new StreamView(node);
     for (const content of [stream, ...early]) view.take(content);
-    app.on("hello", async () => view.take(await ask("onboard")));
+    app.on("hello", async () => {
+      view.find();
+      view.take(await ask("onboard"));
+    });
     app.on("gone", isOther => view.lose(isOther));
   }
   const last = [...app.jobs.values()].filter(job => job.kind === "follow" && job.state === "done").at(-1);
@@ -97,9 +103,14 @@ class StreamView {
     const isSame = content.epoch === this.report.epoch, { stride } = content;
     if (points) this.points = points;
     else if (point) this.points = [...(isSame ? this.points.filter(one => one[0] % stride === 0 && one[0] < point[0]) : []), point];
-    Object.assign(this, { at: content.at, report: { ...this.report, ...content }, isLost: false, since: performance.now() });
+    Object.assign(this, { at: content.at, report: { ...this.report, ...content }, since: performance.now() });
     this.say();
     this.drawSoon();
+  }
+  // only the line itself says that it stands: an answer may have left before it broke
+  find() {
+    this.isLost = false;
+    this.say();
   }
   lose(isOther) {
     Object.assign(this, { isLost: true, isOther });
