@@ -1,10 +1,11 @@
-"""Simulated truth of two screws and rudders, and of shallow water: errors over the bound, coverage, speed.
+"""Simulated truth of two screws, two jets and shallow water: errors over the bound, coverage, speed of simulation.
 
-    python benchmarks/twin_and_shallow.py [--ship twin-screws | shallow-water] [--runs 40]
+    python benchmarks/twin_and_shallow.py [--ship twin-screws | twin-jets | shallow-water] [--runs 40]
 
 Each draw adds white noise to positions, heading, velocities and yaw rate of every run and estimates all free
 coefficients from zero. twin-screws: two zigzags, a turn and a run of kicks with shafts against each other and
-rudders apart. shallow-water: the same manoeuvres in deep water and at 1.5 draughts; the shares of the change of four
+rudders apart. twin-jets: the same of the published waterjet craft, with buckets down on one side and on both.
+shallow-water: the same manoeuvres in deep water and at 1.5 draughts; the shares of the change of four
 linear derivatives and of the resistance are free beside the hull's coefficients. Whatever is fixed is known. The ships
 are in `problems.twin_ships`.
 """
@@ -21,11 +22,11 @@ from seatrial.core.equations import Model
 from seatrial.data.trial import EstimateMethod, EstimateSettings
 from seatrial.physics.models.published import kvlcc2
 from seatrial.physics.simulate.batch import SegmentBatch
-from seatrial.problems.twin_ships import KnownTrials, shallow_water_trials, twin_screw_trials
+from seatrial.problems.twin_ships import KnownTrials, shallow_water_trials, twin_jet_trials, twin_screw_trials
 
 SETTINGS = EstimateSettings(method=EstimateMethod.OUTPUT_ERROR)
 SHIPS: Mapping[str, Callable[[], KnownTrials]] = {
-    "twin-screws": twin_screw_trials, "shallow-water": shallow_water_trials,
+    "twin-screws": twin_screw_trials, "twin-jets": twin_jet_trials, "shallow-water": shallow_water_trials,
 }  # fmt: skip
 STEPS, DT = 50_000, 0.1  # s
 SPEED = 3.0  # million Runge-Kutta steps a second

@@ -1,4 +1,4 @@
-"""Ships with two screws and rudders, and ships in shallow water, that are known: their trials and their sensors."""
+"""Ships with two screws or two jets, and ships in shallow water, that are known: their trials and their sensors."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -19,6 +19,7 @@ from seatrial.physics.hydro.empirical import (
 from seatrial.physics.manoeuvres.programme import programme
 from seatrial.physics.models.mmg import mmg_shallow, mmg_twin
 from seatrial.physics.models.published import kvlcc2_l7, share_name, twin_screw_formulas
+from seatrial.physics.models.waterjet import waterjet_twin
 from seatrial.physics.simulate.replay import replay
 from seatrial.physics.simulate.states import balancing_input, held_inputs
 from seatrial.physics.simulate.steer import manoeuvre
@@ -39,6 +40,7 @@ _SPEED = 1.5  # m/s of the ferry's approach; chosen
 _MANOEUVRES = ("zigzag:10/10", "zigzag:20/20", "turning-circle:35")
 # seconds for which orders of a kick are held; chosen
 _HOLD = 12.0
+_DEGREE = math.radians(1.0)
 # kicks: share of the rate ahead at the mean, difference over it, mean rudder and difference [deg]; chosen
 _KICKS = (
     (0.5, 0.0, 0.0, 0.0), (0.0, 2.0, 0.0, 0.0), (0.5, 0.6, 10.0, 0.0), (0.0, -2.0, 0.0, 0.0), (0.6, 0.0, 0.0, 30.0),
@@ -62,6 +64,27 @@ def twin_screw_ship() -> Model:
     model = mmg_twin()
     parameters = {name: value for name, value in {**values, **ferry}.items() if name in model.parameters}
     return model.with_values(parameters, source="formulas; chosen")
+
+
+# m/s of the jets and of the craft's approach: some 10 kn of the published craft; chosen
+_JET, _CRAFT_SPEED = 9.0, 5.0
+# kicks: share of the jet's speed at the mean, difference over it, nozzles' mean and difference [deg], mean share of the
+# buckets and its difference; chosen
+_JET_KICKS = (
+    (0.6, 0.0, 0.0, 0.0, 0.0, 0.0), (0.8, 0.4, 0.0, 0.0, 0.0, 0.0), (0.8, -0.4, 10.0, 0.0, 0.0, 0.0),
+    (0.9, 0.0, -20.0, 0.0, 0.0, 0.0), (0.7, 0.0, 0.0, 30.0, 0.5, 1.0), (0.7, 0.3, 20.0, -15.0, 0.2, 0.0),
+    (0.6, 0.0, 0.0, 0.0, 0.9, 0.0), (0.7, 0.0, -10.0, 0.0, 0.5, -1.0), (1.0, 0.0, 15.0, 0.0, 0.0, 0.0),
+)  # fmt: skip
+# m, rad, m/s, rad/s: standard deviations of a craft's sensors with differential positions; chosen
+_UNDER_WAY = {
+    "x0": 0.1, "y0": 0.1, "psi": math.radians(0.2), "u": 0.03, "v": 0.03, "r": math.radians(0.1),
+}  # fmt: skip
+
+
+def twin_jet_craft() -> Model:
+    """Return the published waterjet craft with two nozzles and buckets; what a turned jet sends ahead is free too."""
+    model = waterjet_twin()
+    return model.with_parameters(model.parameters.freed("c_b"))
 
 
 DEPTHS = (0.0, 1.5)
@@ -108,19 +131,27 @@ def twin_screw_trials(model: Model | None = None) -> KnownTrials:
     model = model or twin_screw_ship()
     n = balancing_input(model, held_inputs(model, {"n": 1.0}, "delta"), "n", _SPEED)
     runs = [_steered(model, text, _SPEED, {"n": n}) for text in _MANOEUVRES]
-    return KnownTrials(model, [*runs, _kicks(model, n)], _IN_A_TANK)
+    units = {"n": n, "n_difference": n, "delta": _DEGREE, "delta_difference": _DEGREE}
+    return KnownTrials(model, [*runs, _kicks(model, units, _KICKS, 0.5 * _SPEED)], _IN_A_TANK)
 
 
-def _kicks(model: Model, n: float) -> Record:
-    """Orders to both shafts and both rudders, each set held for some seconds."""
-    time = np.arange(0.0, _HOLD * len(_KICKS), _DT)
-    place = np.minimum((time / _HOLD).astype(int), len(_KICKS) - 1)
-    mean, difference, delta, apart = np.array(_KICKS)[place].T
-    inputs = {
-        "n": n * mean, "n_difference": n * difference, "delta": np.radians(delta),
-        "delta_difference": np.radians(apart),
+def twin_jet_trials(model: Model | None = None) -> KnownTrials:
+    """Return manoeuvres of the waterjet craft and a run of kicks: jets against each other, nozzles apart, buckets."""
+    model = model or twin_jet_craft()
+    runs = [_steered(model, text, _CRAFT_SPEED, {"v_j": _JET}) for text in _MANOEUVRES]
+    units = {
+        "v_j": _JET, "v_j_difference": _JET, "delta": _DEGREE, "delta_difference": _DEGREE, "bucket": 1.0,
+        "bucket_difference": 1.0,
     }  # fmt: skip
-    start = dict.fromkeys(model.states, 0.0) | {"u": 0.5 * _SPEED}
+    return KnownTrials(model, [*runs, _kicks(model, units, _JET_KICKS, 0.5 * _CRAFT_SPEED)], _UNDER_WAY)
+
+
+def _kicks(model: Model, units: Mapping[str, float], kicks: Sequence[Sequence[float]], speed: float) -> Record:
+    """Orders to both sides, each set held for some seconds; units: of the columns of the kicks, SI."""
+    time = np.arange(0.0, _HOLD * len(kicks), _DT)
+    place = np.minimum((time / _HOLD).astype(int), len(kicks) - 1)
+    inputs = dict(zip(units, np.array(kicks)[place].T * np.array([*units.values()])[:, None], strict=True))
+    start = dict.fromkeys(model.states, 0.0) | {"u": speed}
     return _kept(replay(model, Record.from_arrays("kicks", time, inputs), start), tuple(inputs))
 
 
@@ -138,8 +169,7 @@ def shallow_water_trials(model: Model | None = None, depths: Sequence[float] = D
 
 def _steered(model: Model, text: str, speed: float, inputs: Mapping[str, float]) -> Record:
     run = manoeuvre(model, programme(text), dt=_DT, duration=_SECONDS, approach=_APPROACH, speed=speed, inputs=inputs)
-    differences = [name for name in ("n_difference", "delta_difference") if name in model.input_names]
-    return _kept(run, ("delta", *inputs, *differences))
+    return _kept(run, tuple(dict.fromkeys((*inputs, *(n for n in model.input_names if n in run)))))
 
 
 def _kept(run: Record, inputs: Sequence[str]) -> Record:
