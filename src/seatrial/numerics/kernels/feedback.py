@@ -232,7 +232,7 @@ def _served(memory, order):
 def sampled_controller(_, x, memory, u):
     """Sample where it is time, let the order wait, and move the actuator within its limits."""
     k = int(memory[STEP])
-    output = x[int(memory[OUTPUT])]
+    output, disturbance = x[int(memory[OUTPUT])], given(memory, DISTURBANCE, k)
     error = given(memory, REFERENCE, k) - output
     _sense(memory, error)
     if k % int(memory[EVERY]) == 0:
@@ -251,9 +251,9 @@ def sampled_controller(_, x, memory, u):
     place, disturbed = int(memory[ACTUATOR]), int(memory[DISTURBED_INPUT])
     u[place] = memory[TRIM] + memory[EFFECT] * lift
     if disturbed == place:
-        u[place] += given(memory, DISTURBANCE, k)
+        u[place] += disturbance
     elif disturbed >= 0:
-        u[disturbed] = given(memory, DISTURBANCE, k)
+        u[disturbed] = disturbance
     memory[ANGLE] = new
     answer(memory, 0, k + 1, new)
     memory[STEP] = k + 1.0
