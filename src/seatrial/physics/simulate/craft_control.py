@@ -1,12 +1,12 @@
 """Craft under control: a step of heading, a track, a place that is kept."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.core.equations import Model
+from seatrial.core.results.station import StationThruster
 from seatrial.core.values import Array, DivergedError
 from seatrial.numerics.kernels import feedback
 from seatrial.numerics.kernels import station as keeper
@@ -14,7 +14,7 @@ from seatrial.numerics.kernels.feedback import clamp
 from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE, OPTIONS, kernel
 from seatrial.physics.loops.loop import Sampling
 from seatrial.physics.models.thrust_orders import OUTSIDE_FORCES
-from seatrial.physics.models.thruster_layout import MIN_LAG, AngleInput, Thruster
+from seatrial.physics.models.thruster_layout import MIN_LAG, AngleInput, Thruster, layout_of
 from seatrial.physics.simulate.closed_loop import (
     UNLIMITED,
     ActuatorLimits,
@@ -159,45 +159,26 @@ def follow_track(
 
 
 @dataclass(frozen=True, eq=False)
-class ThrusterOrders:
-    """How a controller orders one thruster: rows of the inverse (6,), table of share (k,) over rising thrust (k,)."""
-
-    thruster: Thruster
-    rows: Array
-    share: Array
-    thrust: Array
-
-    def traits(self, model: Model) -> Array:
-        """Return what `station_keeper` reads of it."""
-        made, angle, command = np.zeros(keeper.TRAITS), self.thruster.angle, self.thruster.command
-        made[:6] = self.rows
-        values = {
-            keeper.AZIMUTH: isinstance(angle, AngleInput),
-            keeper.COMMAND_INPUT: model.input_names.index(command.channel),
-            keeper.ANGLE_INPUT: model.input_names.index(angle.channel) if isinstance(angle, AngleInput) else -1,
-            keeper.ZERO: command.zero,
-            keeper.SPAN: command.span,
-            keeper.LEAST: self.thrust[0],
-            keeper.MOST: self.thrust[-1],
-        }
-        made[list(values)] = list(values.values())
-        return made
-
-
-@dataclass(frozen=True, eq=False)
-class StationController:
-    """A sampled PID in body axes: gains (3, 3), filter lags [s] (3,), how it samples, the thrusters.
-
-    Every sample: v by Tustin's rule from the moves of the pose, the integral by trapezoids, kept while forces are cut.
-    sampling: noise and resolution are those of the heading [rad]. step: of the simulation at most [s].
-    """
+class StationGains:
+    """tau = -K_p R'e - K_i R' int(e) - K_d v: matrices (3, 3); lag: of the filter of v in each axis [s], (3,)."""
 
     KP: Array
     KI: Array
     KD: Array
     lag: Array
+
+
+@dataclass(frozen=True, eq=False)
+class StationController:
+    """A sampled PID in body axes: gains, how it samples, how each thruster is ordered.
+
+    Every sample: v by Tustin's rule from the moves of the pose, the integral by trapezoids, kept while forces are cut.
+    sampling: noise and resolution are those of the heading [rad]. step: of the simulation at most [s].
+    """
+
+    gains: StationGains
     sampling: Sampling
-    thrusters: Sequence[ThrusterOrders]
+    thrusters: tuple[StationThruster, ...]
     step: float = MIN_LAG
 
     @property
@@ -207,12 +188,13 @@ class StationController:
 
     def law(self, model: Model) -> LoopLaw:
         """Return the law that keeps a model of `with_outside_forces` on station."""
-        past, forward = filter_coefficients(self.lag, self.sampling.sample_s)
+        past, forward = filter_coefficients(self.gains.lag, self.sampling.sample_s)
         pose = [model.states.index(name) for name in ("x0", "y0", "psi")]
         at_rest, n = np.zeros(keeper.POSE - keeper.INTEGRAL), len(self.thrusters)
         sizes = [0.0, self.sampling.sample_s, n, len(self.thrusters[0].share)]
-        matrices = [matrix.ravel() for matrix in (self.KP, self.KI, self.KD)]
-        traits = [orders.traits(model) for orders in self.thrusters]
+        matrices = [matrix.ravel() for matrix in (self.gains.KP, self.gains.KI, self.gains.KD)]
+        layout = layout_of(model).thrusters
+        traits = [_traits(model, *pair) for pair in zip(layout, self.thrusters, strict=True)]
         tables = [part for orders in self.thrusters for part in (orders.share, orders.thrust)]
         law = np.concatenate([*matrices, past, forward, at_rest, pose, sizes, *traits, *tables])
         head = {feedback.DISTURBED_INPUT: model.input_names.index(OUTSIDE_FORCES[0])}
@@ -244,6 +226,23 @@ class StationRun:
         return replace(self, **rows)
 
 
+def _traits(model: Model, thruster: Thruster, orders: StationThruster) -> Array:
+    """Return what `station_keeper` reads of a thruster."""
+    made, angle, command = np.zeros(keeper.TRAITS), thruster.angle, thruster.command
+    made[: orders.inverse.size] = orders.inverse.ravel()
+    values = {
+        keeper.AZIMUTH: isinstance(angle, AngleInput),
+        keeper.COMMAND_INPUT: model.input_names.index(command.channel),
+        keeper.ANGLE_INPUT: model.input_names.index(angle.channel) if isinstance(angle, AngleInput) else -1,
+        keeper.ZERO: command.zero,
+        keeper.SPAN: command.span,
+        keeper.LEAST: orders.thrust[0],
+        keeper.MOST: orders.thrust[-1],
+    }
+    made[list(values)] = list(values.values())
+    return made
+
+
 def filter_coefficients(lag: Array, sample: float) -> tuple[Array, Array]:
     """Return a, b of v[k] = a v[k-1] + b (x[k] - x[k-1]): s / (lag s + 1) by Tustin's rule; each (3,)."""
     return (2.0 * lag - sample) / (2.0 * lag + sample), 2.0 / (2.0 * lag + sample)
@@ -266,7 +265,7 @@ def keep_station(
     """
     dt, sampling, count = controller.dt, controller.sampling, pushes.shape[1]
     noise = sample_noise(sampling, -(-count // steps_a_sample(sampling, dt)), seed)
-    at_rest = np.array([(orders.thruster.command.zero, 0.0) for orders in controller.thrusters]).ravel()
+    at_rest = np.array([(thruster.command.zero, 0.0) for thruster in layout_of(model).thrusters]).ravel()
     law = controller.law(model).sampled(sampling, dt, noise, at_rest)
     forces = np.stack([hold_equivalent(force) for force in pushes[2:]])
     inputs = np.concatenate([resting, np.zeros(len(OUTSIDE_FORCES))])

@@ -17,7 +17,6 @@ from seatrial.physics.simulate.batch import INPUT_KINDS, SegmentBatch
 
 _SAME_SAMPLE = 1e-9  # samples by which a place is rounded; chosen
 _NONE: Index = np.empty(0, dtype=np.int64)
-_KEPT = 16  # models in steps kept in memory: a controller is tried in many seas; chosen
 SUBSTEPS = 8  # straight pieces of a spline in one sample; chosen
 
 
@@ -47,7 +46,7 @@ def discrete_matrices(
     return DiscreteMatrices(e, g0, g1, c, d, (de, dg0, dg1, dc, dd))
 
 
-@lru_cache(maxsize=_KEPT)
+@lru_cache
 def exact_step(model: Model, h: float) -> tuple[Array, Array, Array]:
     """Return e, g0 and g1 of an affine model over a step h [s] at its own parameters."""
     made, _ = _matrices_of_one(model, model.parameters.values, h, np.arange(len(model.states)), _NONE)

@@ -160,8 +160,7 @@ def _actuators_only(model: Model, names: tuple[str, ...]) -> Model:
 
 # The straight run before a manoeuvre: inputs that are held, the steady speed, the time to travel one's own length.
 
-_MAX_SPEED = 100.0  # m/s; guards against a wrong unit
-_SPEEDS = np.geomspace(1e-3, _MAX_SPEED, 60)  # m/s; grid that brackets a speed; chosen
+_SPEEDS = np.geomspace(1e-3, 1e2, 60)  # m/s; grid that brackets a speed, up to what guards against a wrong unit; chosen
 _SEARCHED = np.geomspace(1e-3, 1e3, 121)  # propulsion over speed, m/s or rps: twenty a decade; chosen
 
 
