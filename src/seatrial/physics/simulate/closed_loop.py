@@ -8,13 +8,14 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from seatrial.core.equations import Model
+from seatrial.core.results.tuning import DiscreteBlock
 from seatrial.core.values import Array, InputError, Provenance, Record, frozen, spelling_hint
 from seatrial.numerics.kernels import feedback
 from seatrial.numerics.kernels.feedback import sampled_controller
 from seatrial.numerics.kernels.integrate import evaluate
 from seatrial.numerics.kernels.linear import propagators, replay
 from seatrial.physics.loops import Block, TransferLoop
-from seatrial.physics.loops.discrete import difference_equation, holding_terms
+from seatrial.physics.loops.discrete import discrete_blocks
 from seatrial.physics.loops.loop import Sampling, controllable_form, in_series, straight_step
 from seatrial.physics.loops.loop_states import StateSpace
 from seatrial.physics.simulate.replay import commanded, record_of
@@ -116,15 +117,10 @@ class LoopLaw:
 
 def transfer_law(loop: TransferLoop, gains: Array, dt: float) -> LoopLaw:
     """Return the law of a loop's controller between its sensor and its servo."""
-    T = loop.required_sampling.sample_s
     sensor, sensor_order = _stepped(in_series("sensor", loop.sensor), dt)
     servo, servo_order = _stepped(in_series("servo", loop.servo), dt)
-    holds, sign = holding_terms(loop)
-    terms = [
-        _block(term.block, T, float(gain), sign if held else 0.0)
-        for gain, term, held in zip(gains, loop.terms, holds, strict=True)
-    ]
-    blocks = np.concatenate([*terms, *(_block(block, T, 1.0, 0.0) for block in loop.filters)])
+    factors = [*np.asarray(gains).tolist(), *[1.0] * len(loop.filters)]
+    blocks = np.concatenate([_numbers(block, gain) for block, gain in zip(discrete_blocks(loop), factors, strict=True)])
     head = {
         feedback.SENSOR_ORDER: sensor_order,
         feedback.SERVO_ORDER: servo_order,
@@ -134,10 +130,9 @@ def transfer_law(loop: TransferLoop, gains: Array, dt: float) -> LoopLaw:
     return LoopLaw(sampled_controller, {feedback.SENSOR: sensor, feedback.SERVO: servo, feedback.LAW: blocks}, head)
 
 
-def _block(block: Block, T: float, gain: float, holds: float) -> Array:
-    b, a = difference_equation(block, T)
-    n = len(a) - 1
-    return np.concatenate([[n, gain, holds, 0.0], b, a, np.zeros(n)])
+def _numbers(block: DiscreteBlock, gain: float) -> Array:
+    n = len(block.a) - 1
+    return np.concatenate([[n, gain, block.hold, 0.0], block.b, block.a, np.zeros(n)])
 
 
 @lru_cache(maxsize=_KEPT)
