@@ -192,13 +192,13 @@ class _Programme:
         ends += [np.array([1.0, 0.0, 0.0])] * len(T)
         settings = clarabel.DefaultSettings()
         settings.verbose = False
-        found = clarabel.DefaultSolver(
+        solution = clarabel.DefaultSolver(
             csc_matrix((n + 1, n + 1)), np.eye(1, n + 1)[0], csc_matrix(-np.vstack(cones)), np.concatenate(ends),
             [clarabel.SecondOrderConeT(len(cone)) for cone in cones], settings,
         ).solve()  # fmt: skip
-        if found.status not in (clarabel.SolverStatus.Solved, clarabel.SolverStatus.AlmostSolved):
-            raise NoBound(f"the convex solver finds no bound (it says: {found.status}); ask for fewer sections")
-        return float(found.obj_val)
+        if solution.status not in (clarabel.SolverStatus.Solved, clarabel.SolverStatus.AlmostSolved):
+            raise NoBound(f"the convex solver finds no bound (it says: {solution.status}); ask for fewer sections")
+        return float(solution.obj_val)
 
 
 def _cone(rows: Array) -> Array:

@@ -92,9 +92,9 @@ def late(memory, place, k, order):
     size = int(memory[QUEUE_SIZE])
     if size == 0:
         return order
-    at = int(memory[QUEUE]) + place * size + k % size
-    acting = memory[at]
-    memory[at] = order
+    slot = int(memory[QUEUE]) + place * size + k % size
+    acting = memory[slot]
+    memory[slot] = order
     return acting
 
 

@@ -19,6 +19,7 @@ from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE, LEAN, kernel
 
 # places in the law: three matrices of nine numbers, vectors of three (the last the places of the pose among the states)
 KP, KI, KD, PAST, FORWARD, INTEGRAL, VELOCITY, LAST, POSE = 0, 9, 18, *range(27, 45, 3)
+# share given, sample time [s], how many thrusters, rows of their tables; thrusters and tables stand behind
 SHARE, SAMPLE, THRUSTERS, TABLE, ROWS = range(45, 50)
 _SWAY, _YAW = 3, 6  # places of the rows of a matrix of nine numbers
 # a thruster: two rows of the inverse, then what it is, its direction, and what it was ordered last
@@ -89,11 +90,11 @@ def _allocate(memory, law, X, Y, N):
 @njit(inline="always", **LEAN)
 def _force(memory, law, row, x0, x1, x2, i0, i1, i2):
     """Return one row of -(K_p e + K_i int(e) + K_d v), errors and integrals in body axes."""
-    at, v = law + row, law + VELOCITY
-    p = memory[at + KP] * x0 + memory[at + KP + 1] * x1 + memory[at + KP + 2] * x2
-    i = memory[at + KI] * i0 + memory[at + KI + 1] * i1 + memory[at + KI + 2] * i2
-    d = memory[at + KD] * memory[v]
-    d += memory[at + KD + 1] * memory[v + 1] + memory[at + KD + 2] * memory[v + 2]
+    gains, v = law + row, law + VELOCITY
+    p = memory[gains + KP] * x0 + memory[gains + KP + 1] * x1 + memory[gains + KP + 2] * x2
+    i = memory[gains + KI] * i0 + memory[gains + KI + 1] * i1 + memory[gains + KI + 2] * i2
+    d = memory[gains + KD] * memory[v]
+    d += memory[gains + KD + 1] * memory[v + 1] + memory[gains + KD + 2] * memory[v + 2]
     return -(p + i + d)
 
 

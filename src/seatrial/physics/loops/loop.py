@@ -81,11 +81,11 @@ class Block:
 
 def _polynomial(coefficients: tuple[float, ...], s: Complex) -> Complex:
     """Return a polynomial, highest power first, at points of any shape, by Horner's rule in place."""
-    made = np.full_like(s, coefficients[0])
+    value = np.full_like(s, coefficients[0])
     for coefficient in coefficients[1:]:
-        made *= s
-        made += coefficient
-    return made
+        value *= s
+        value += coefficient
+    return value
 
 
 def in_series(name: str, blocks: Iterable[Block]) -> Block:

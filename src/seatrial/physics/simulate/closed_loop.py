@@ -59,7 +59,7 @@ def steps_a_sample(sampling: Sampling, dt: float) -> int:
     return every
 
 
-def sample_noise(sampling: Sampling, count: int, seed: int) -> Array:
+def sample_noise(sampling: Sampling, count: int, seed: int = 0) -> Array:
     """Return the noise of so many samples, (n,)."""
     if not sampling.noise:
         return np.zeros(count)
@@ -207,7 +207,6 @@ class ActuatorLimits:
 
 
 UNLIMITED = ActuatorLimits()
-_NOISE_SEED = 0  # of the samples' noise where none is given; chosen
 
 
 @dataclass(frozen=True, eq=False)
@@ -302,7 +301,7 @@ class ClosedLoop:
         """Return the law with the limits of its actuator for so many steps; noise: of each sample that it takes."""
         sampling, place = self.loop.required_sampling, self._input_index(self.actuator)
         samples = -(-count // steps_a_sample(sampling, self.dt))
-        heard = sample_noise(sampling, samples, _NOISE_SEED) if noise is None else noise[:samples]
+        heard = sample_noise(sampling, samples) if noise is None else noise[:samples]
         head = {
             feedback.OUTPUT: self.model.states.index(self.output),
             feedback.ACTUATOR: place,

@@ -228,8 +228,8 @@ class StationRun:
 
 def _traits(model: Model, thruster: Thruster, orders: StationThruster) -> Array:
     """Return what `station_keeper` reads of a thruster."""
-    made, angle, command = np.zeros(keeper.TRAITS), thruster.angle, thruster.command
-    made[: orders.inverse.size] = orders.inverse.ravel()
+    traits, angle, command = np.zeros(keeper.TRAITS), thruster.angle, thruster.command
+    traits[: orders.inverse.size] = orders.inverse.ravel()
     values = {
         keeper.AZIMUTH: isinstance(angle, AngleInput),
         keeper.COMMAND_INPUT: model.input_names.index(command.channel),
@@ -239,8 +239,8 @@ def _traits(model: Model, thruster: Thruster, orders: StationThruster) -> Array:
         keeper.LEAST: orders.thrust[0],
         keeper.MOST: orders.thrust[-1],
     }
-    made[list(values)] = list(values.values())
-    return made
+    traits[list(values)] = list(values.values())
+    return traits
 
 
 def filter_coefficients(lag: Array, sample: float) -> tuple[Array, Array]:
