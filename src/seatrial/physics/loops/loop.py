@@ -64,7 +64,7 @@ class Block:
 
     def frequency_response(self, omega: Array) -> Complex:
         """Return the frequency response at omega [rad/s], any shape."""
-        s = 1j * np.asarray(omega, dtype=np.float64)
+        s = np.asarray(1j * np.asarray(omega, dtype=np.float64), dtype=np.complex128)
         return np.asarray(_polynomial(self.num, s) / _polynomial(self.den, s), dtype=np.complex128)
 
     def scaled(self, factor: float) -> "Block":
