@@ -17,15 +17,15 @@ import numpy as np
 from thrusters_truth import write_table
 
 from seatrial.control.loopfile.load import tuning_task
-from seatrial.control.station.craft import StationCraft, generalised_inverse, inverse_rows
-from seatrial.control.station.station_loop import StationGains, StationLoop, station_point
+from seatrial.control.station.craft import StationCraft, generalised_inverse
+from seatrial.control.station.station_loop import StationLoop, station_point
 from seatrial.control.station.trial import StationSetting, StationSimulator
 from seatrial.control.station.tune_station import station_craft, station_disturbances, tune_station
 from seatrial.control.task import StationDemand, TuningTask
 from seatrial.core.results.station import StationKeeping, StationTrial
 from seatrial.physics.loops.loop import Sampling
 from seatrial.physics.models.thruster_layout import CommandInput, Damping, Thruster, ThrusterLayout
-from seatrial.physics.simulate.craft_control import StationController, ThrusterOrders
+from seatrial.physics.simulate.craft_control import StationController, StationGains
 from seatrial.problems.thruster_craft import KnownThrusterCraft, noisy, simulated_runs
 
 ROOT = Path(__file__).parents[1]
@@ -58,13 +58,9 @@ def cross_drive() -> KnownThrusterCraft:
 def tried_on(own: StationCraft, made: StationKeeping, task: TuningTask, demand: StationDemand) -> StationTrial:
     """Return the trial of a craft under the controller of another, rebuilt from what the tuning says of it."""
     inverse = np.concatenate([one.inverse for one in made.thrusters])
-    orders = [
-        ThrusterOrders(thruster, row, one.share, one.thrust)
-        for thruster, row, one in zip(own.thrusters, inverse_rows(own, inverse), made.thrusters, strict=True)
-    ]
     gains = StationGains(made.KP, made.KI, made.KD, made.filter_lag)
     sampling = Sampling(made.sample_s, demand.dead_time)
-    controller = StationController(made.KP, made.KI, made.KD, made.filter_lag, sampling, orders)
+    controller = StationController(gains, sampling, made.thrusters)
     loop = StationLoop(
         station_point(own, demand.current, 0.0, inverse),
         gains,

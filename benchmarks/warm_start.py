@@ -163,9 +163,9 @@ def run(names: tuple[str, ...] = ("check", "identify", "simulate", "report")) ->
         environment["OPENBLAS_NUM_THREADS"] = "1"  # as the command line sets it, also for the floor
         environment.pop("PYTHONDONTWRITEBYTECODE", None)
         _write_two_fronts(Path(folder))
-        least = floor(environment)
-        lines.append(Line("imports alone", least, "s"))
         for name in names:
+            least = floor(environment)  # beside each command: other work on the machine slows both
+            lines.append(Line(f"imports alone, before {name}", least, "s"))
             phases = warm(commands(Path(folder))[name], environment)
             total = sum(phases.values())
             limit = {"check": CHECK_LIMIT, "identify": IDENTIFY_LIMIT}.get(name)

@@ -42,7 +42,7 @@ from seatrial.physics.loops.objective import variance
 from seatrial.physics.loops.structures import ROLL, fin_loop, five_gain_loop
 from seatrial.physics.sea.spectrum import ittc
 
-convex = pytest.mark.skipif(not is_available(), reason="cvxpy is not installed (extra 'bounds')")
+convex = pytest.mark.skipif(not is_available(), reason="clarabel is not installed (extra 'bounds')")
 U = 18.0 * 1852.0 / 3600.0
 FIN = fin_loop()
 
@@ -186,13 +186,13 @@ def test_the_published_fins_leave_room_and_five_gains_take_some() -> None:
     assert alone < ratio < 1.0
 
 
-def test_without_cvxpy_the_quadratic_one_remains(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_clarabel_the_quadratic_one_remains(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bounds_module, "is_available", lambda: False)
     assert [b.name for b in bounds(task(), FIN, FIN.gain_values)] == ["everything known"]
 
 
-def test_without_cvxpy_the_convex_one_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "cvxpy", None)
+def test_without_clarabel_the_convex_one_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "clarabel", None)
     with pytest.raises(InputError, match=r"pip install 'seatrial\[bounds\]'"):
         youla_bound(FIN, beam_sea(), FIN.gain_values, 2.0)
 

@@ -27,7 +27,7 @@ from seatrial.physics.loops import (
 from seatrial.physics.loops.encounter_spectrum import disturbance_spectrum
 from seatrial.physics.loops.loop import controllable_form
 
-# The least variance that any stabilising linear controller leaves, by a convex programme (cvxpy, extra `bounds`).
+# The least variance that any stabilising linear controller leaves, by a convex programme (clarabel, extra `bounds`).
 
 KAUTZ_DAMPING = 0.7  # damping ratio of each Kautz section; chosen
 KAUTZ_SECTIONS = 32  # second-order sections of the expansion; chosen
@@ -176,23 +176,34 @@ class _Programme:
 
     def solve(self, Ms: float) -> float:
         """Return the least |A x - b|."""
-        cvxpy = _cvxpy()
-        x: Any = cvxpy.Variable(self.A.shape[1])
-        held = [cvxpy.norm(self.R @ x) <= 1.0]
+        from scipy.sparse import csc_matrix
+
+        clarabel, n = _clarabel(), self.A.shape[1]
+        # min t: cones of second order over t and x, in which what is first bounds the norm of what follows
+        cones = [_cone(self.A), _cone(self.R)]
+        ends = [np.append(0.0, -self.b), np.append(1.0, np.zeros(len(self.R)))]
+        cones[0][0, 0] = 1.0
         if math.isfinite(Ms):
-            held.append(cvxpy.norm(cvxpy.vstack([1.0 - self.Z.real @ x, self.Z.imag @ x]), 2, axis=0) <= Ms)
+            cones += [_cone(np.stack([-z.real, z.imag])) for z in self.Z]
+            ends += [np.array([Ms, 1.0, 0.0])] * len(self.Z)
         capped = np.isfinite(self.T_limit)
-        if capped.any():
-            T = self.Z[capped] / self.T_limit[capped, None]
-            held.append(cvxpy.norm(cvxpy.vstack([T.real @ x, T.imag @ x]), 2, axis=0) <= 1.0)
-        problem = cvxpy.Problem(cvxpy.Minimize(cvxpy.norm(self.A @ x - self.b)), held)
-        try:
-            problem.solve(solver=cvxpy.CLARABEL)
-        except cvxpy.SolverError as error:
-            raise NoBound(f"the convex solver gives up on the bound ({error}); ask for fewer sections") from error
-        if problem.value is None or not np.isfinite(problem.value):
-            raise NoBound(f"the convex solver finds no bound (it says: {problem.status}); ask for fewer sections")
-        return float(problem.value)
+        T = self.Z[capped] / self.T_limit[capped, None]
+        cones += [_cone(np.stack([z.real, z.imag])) for z in T]
+        ends += [np.array([1.0, 0.0, 0.0])] * len(T)
+        settings = clarabel.DefaultSettings()
+        settings.verbose = False
+        solution = clarabel.DefaultSolver(
+            csc_matrix((n + 1, n + 1)), np.eye(1, n + 1)[0], csc_matrix(-np.vstack(cones)), np.concatenate(ends),
+            [clarabel.SecondOrderConeT(len(cone)) for cone in cones], settings,
+        ).solve()  # fmt: skip
+        if solution.status not in (clarabel.SolverStatus.Solved, clarabel.SolverStatus.AlmostSolved):
+            raise NoBound(f"the convex solver finds no bound (it says: {solution.status}); ask for fewer sections")
+        return float(solution.obj_val)
+
+
+def _cone(rows: Array) -> Array:
+    """Return rows (1 + k, 1 + n) over t and x of a cone of second order: its bound, then rows (k, n) over x."""
+    return np.pad(rows, ((1, 0), (1, 0)))
 
 
 def _servo_response(loop: TransferLoop, omega: Array) -> Array:
@@ -214,12 +225,12 @@ def _frequency_span(loop: TransferLoop, low: float) -> tuple[float, float]:
     return low, max(4.0 * float(max(poles, default=0.0)), _DECADES * low)
 
 
-def _cvxpy() -> Any:
+def _clarabel() -> Any:
     try:
-        import cvxpy
+        import clarabel
     except ImportError as error:
-        raise InputError("bounds need the package cvxpy: pip install 'seatrial[bounds]'") from error
-    return cvxpy
+        raise InputError("bounds need the package clarabel: pip install 'seatrial[bounds]'") from error
+    return clarabel
 
 
 # What a controller that knew everything would leave: linear-quadratic state feedback, for context.
@@ -358,14 +369,14 @@ def _variances_by_weight(plant: Block, disturbance: Block, shaping: Block) -> Ca
 
 
 def is_available() -> bool:
-    """Return whether the convex bounds can be computed: cvxpy, the extra `bounds`, is installed."""
-    return find_spec("cvxpy") is not None
+    """Return whether the convex bounds can be computed: clarabel, the extra `bounds`, is installed."""
+    return find_spec("clarabel") is not None
 
 
 def bounds(task: TuningTask, loop: TransferLoop, gains: Array) -> tuple[PerformanceBound, ...]:
     """Return bounds against the controller `gains` (g,) of `loop`, in the first sea of the task.
 
-    Where cvxpy is installed the convex one in the sea itself, and in a rational spectrum fitted to it: one without
+    Where clarabel is installed the convex one in the sea itself, and in a rational spectrum fitted to it: one without
     energy outside a band lets complicated controllers predict what real seas, with tails, do not. The linear-quadratic
     one in the latter, for context. None for servo loops on plants that integrate or run away (an autopilot), nor where
     no sea is met: their output has no variance without control. Nor where a point of the hull counts, not the output.

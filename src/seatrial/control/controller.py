@@ -18,7 +18,6 @@ from seatrial.control.task import OUTPUT, SLOWEST, Demand, TrimmedShip, TuningTa
 from seatrial.core.results.tuning import (
     Component,
     Controller,
-    DiscreteBlock,
     DiscreteController,
     ManoeuvreResponse,
     ReferenceFilter,
@@ -31,7 +30,7 @@ from seatrial.core.values import (
 )
 from seatrial.physics.loops import Block, TransferLoop, margins, reversals_per_hour
 from seatrial.physics.loops.autopilot import START, FeedForward, acceleration_feed_forward, working_frequency
-from seatrial.physics.loops.discrete import difference_equation, holding_terms
+from seatrial.physics.loops.discrete import discrete_blocks
 from seatrial.physics.loops.performance import frequency_band
 from seatrial.physics.simulate.closed_loop import (
     REFERENCE,
@@ -388,17 +387,9 @@ def discrete_controller(task: TuningTask, loop: TransferLoop) -> DiscreteControl
     if not margins(loop).is_stable:
         return None
     sampling = loop.required_sampling
-    holds, sign = holding_terms(loop)
-
-    def block(role: str, one: Block, gain: str = "", *, is_held: bool = False) -> DiscreteBlock:
-        b, a = difference_equation(one, sampling.sample_s)
-        return DiscreteBlock(role, one.name, gain, b, a, int(sign) if is_held else 0)
-
-    terms = (block("term", t.block, t.gain, is_held=held) for t, held in zip(loop.terms, holds, strict=True))
-    blocks = (*terms, *(block("filter", one) for one in loop.filters))
     reference = None if task.demand is None else _reference_filter(task, loop, task.demand)
     return DiscreteController(
-        sampling.sample_s, blocks, sampling.dead_time, sampling.noise, sampling.resolution, reference,
+        sampling.sample_s, discrete_blocks(loop), sampling.dead_time, sampling.noise, sampling.resolution, reference,
         tuple(_component("sensor", block) for block in loop.sensor),
     )  # fmt: skip
 

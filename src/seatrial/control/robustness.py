@@ -62,7 +62,8 @@ def _of_draws(
         return math.nan, ()
     if not all(stable):
         return math.inf, stable
-    return max(_peak(gains @ one.open_loop_terms(omega)) for one in loops_drawn(loop, samples)), stable
+    terms = loop.term_responses(omega)
+    return max(_peak(gains @ (terms * one.path_response(omega))) for one in loops_drawn(loop, samples)), stable
 
 
 def _corners(box: PlantUncertainty, loop: TransferLoop) -> list[_Corner]:

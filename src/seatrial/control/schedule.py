@@ -90,12 +90,13 @@ def smooth_gains(grid: GainGrid, start: Array, largest_step: float) -> Array:
         return float(np.mean(costs) + _PENALTY * np.sum(broken))
 
     x = np.clip(np.log(np.maximum(start[:, places], np.exp(bounds[0]))), *bounds)
-    radius, best = _TRUST[0], merit(x)
+    radius, best, slopes = _TRUST[0], merit(x), _slopes(grid, gains_of(x))
     for _ in range(_ROUNDS):
-        tried = x + _programme(grid, gains_of(x), x, bounds, apart, radius)
+        tried = x + _programme(grid, slopes, x, bounds, apart, radius)
         value = merit(tried)
         if value < best:
             x, best, radius = tried, value, min(2.0 * radius, _TRUST[0])
+            slopes = _slopes(grid, gains_of(x))
             continue
         radius *= 0.5
         if radius < _TRUST[1]:
@@ -104,13 +105,14 @@ def smooth_gains(grid: GainGrid, start: Array, largest_step: float) -> Array:
 
 
 def _programme(
-    grid: GainGrid, gains: Array, x: Array, bounds: tuple[Array, Array], apart: float, radius: float
-) -> Array:
-    """Return the step (n, f) of the linear programme about the gains; one slack for each condition."""
+    grid: GainGrid, about: tuple[Array, Array, Array], x: Array, bounds: tuple[Array, Array], apart: float,
+    radius: float,
+) -> Array:  # fmt: skip
+    """Return the step (n, f) of the linear programme by the slopes about x (n, f); one slack for each condition."""
     from scipy.optimize import linprog
 
     n, f = x.shape
-    slopes, limits, excesses = _slopes(grid, gains)
+    slopes, limits, excesses = about
     # a slack for each condition behind the gains; 81 unknowns for 27 conditions: a dense table does
     restrictions = np.zeros((n, 4, n * f + n))
     for i in range(n):

@@ -292,9 +292,11 @@ def _one_sided_matrices(ship: TrimmedShip) -> tuple[LinearSystem, LinearSystem]:
     for name in lateral_states(model):
         aside[model.states.index(name)] = -_LATERAL_OFFSET if name == "v" else _LATERAL_OFFSET
     states = ship.state + np.stack([aside, -aside])
-    rates, seen = (jacobian_at(model, states, ship.inputs, of_outputs=b) for b in (False, True))
-    row = model.observables.index(ship.output)
-    rows = np.eye(nx, nx + nu)[None, row].repeat(2, 0) if row < nx else seen[:, row - nx]
+    rates, row = jacobian_at(model, states, ship.inputs, of_outputs=False), model.observables.index(ship.output)
+    if row < nx:
+        rows = np.eye(nx, nx + nu)[None, row].repeat(2, 0)
+    else:
+        rows = jacobian_at(model, states, ship.inputs, of_outputs=True)[:, row - nx]
     one, other = (LinearSystem(j[:, :nx], j[:, nx : nx + nu], c[:nx], c[nx : nx + nu])
                   for j, c in zip(rates, rows, strict=True))  # fmt: skip
     return one, other

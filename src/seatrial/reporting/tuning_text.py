@@ -164,7 +164,8 @@ def _other_ships(tuning: Tuning) -> str:
     draws = [f"{r.stable_draws} of {r.draws} ships drawn from the fit"] if r.draws else []
     text = f"Stable: {enumeration([*draws, f'{r.stable_corners} of {r.corners} corners of the uncertainty'])}"
     allowed = f" ({exact(tuning.constraints.Ms, 3)} allowed)" if math.isfinite(tuning.constraints.Ms) else ""
-    peak = f"; Ms up to {fixed(r.corners_Ms, 2)}{allowed} at {r.worst_corner}" if math.isfinite(r.corners_Ms) else ""
+    largest, where = max((r.corners_Ms, f"at {r.worst_corner}"), (r.draws_Ms if r.draws else 0.0, "of a ship drawn"))
+    peak = f"; Ms up to {fixed(largest, 2)}{allowed} {where}" if math.isfinite(largest) else ""
     return f"{text}{peak}."
 
 

@@ -11,10 +11,10 @@ from seatrial.control.station.craft import (
     capability,
     current_force,
     generalised_inverse,
-    inverse_rows,
     largest_force,
     refuse_under_actuated,
     share_given,
+    thruster_orders,
     weights,
 )
 from seatrial.core.values import InputError
@@ -33,11 +33,11 @@ def test_the_inverse_gives_the_force_with_the_least_effort() -> None:
 def test_an_azimuth_has_a_row_ahead_and_one_to_starboard() -> None:
     """Four at (1.8, -0.8), ... of equal thrust: a quarter of the force each, a moment across the arm."""
     own = craft(azimuths())
-    rows = inverse_rows(own, generalised_inverse(own))
+    rows = [one.inverse for one in thruster_orders(own, generalised_inverse(own))]
     arm = 4.0 * (1.8**2 + 0.8**2)
-    assert rows.shape == (4, 6)
-    assert rows[0] == pytest.approx([0.25, 0.0, 0.8 / arm, 0.0, 0.25, 1.8 / arm])
-    assert rows[2] == pytest.approx([0.25, 0.0, -0.8 / arm, 0.0, 0.25, -1.8 / arm])
+    assert len(rows) == 4
+    assert rows[0] == pytest.approx(np.array([[0.25, 0.0, 0.8 / arm], [0.0, 0.25, 1.8 / arm]]))
+    assert rows[2] == pytest.approx(np.array([[0.25, 0.0, -0.8 / arm], [0.0, 0.25, -1.8 / arm]]))
 
 
 def test_the_largest_force_is_that_of_the_geometry() -> None:

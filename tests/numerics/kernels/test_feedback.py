@@ -36,11 +36,14 @@ def test_the_order_aims_at_a_point_ahead_on_the_leg(north: float, error: float, 
     count, delta = 2, 10.0
     sensor, servo, noise = feedback.HEAD_SIZE + np.array([0, law_size(0) + 1, 2 * law_size(0) + 1])
     series = noise + count
-    block = series + 4 * count + 1  # behind reference, disturbance, feed-forward and angles
-    memory = np.zeros(block + feedback.TRACK_HEAD + count)
+    answers = series + 3 * count  # behind reference, disturbance and feed-forward
+    block = answers + 3 * (count + 1)
+    memory = np.zeros(block + feedback.TRACK_HEAD)
     head = {
         feedback.COUNT: count,
         feedback.SERIES: series,
+        feedback.ANSWERS: answers,
+        feedback.TRACK: block,
         feedback.EVERY: 1,
         feedback.SENSOR: sensor,
         feedback.SERVO: servo,
@@ -62,6 +65,6 @@ def test_the_order_aims_at_a_point_ahead_on_the_leg(north: float, error: float, 
     }
     memory[[block + place for place in track]] = list(track.values())
     track_follower(0.0, np.array([0.0, north, 10.0]), memory, np.zeros(1))
-    assert memory[block + feedback.TRACK_HEAD] == pytest.approx(error)
+    assert memory[answers + count + 1] == pytest.approx(error)
     assert memory[series] == pytest.approx(course - math.atan(error / delta))
     assert memory[block + feedback.INTEGRAL] == pytest.approx(0.1 * delta * error / (error**2 + delta**2))

@@ -1,5 +1,7 @@
 """Difference equations: against SciPy's bilinear rule, and the frequency response they should have."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.signal import bilinear, freqz
@@ -7,8 +9,14 @@ from scipy.signal import bilinear, freqz
 from seatrial.core.values import InputError
 from seatrial.physics.loops import Block
 from seatrial.physics.loops.autopilot import heading_loop
-from seatrial.physics.loops.discrete import default_sample_time, difference_equation, holding_terms, ringing_blocks
-from seatrial.physics.loops.loop import straight_step
+from seatrial.physics.loops.discrete import (
+    default_sample_time,
+    difference_equation,
+    discrete_blocks,
+    holding_terms,
+    ringing_blocks,
+)
+from seatrial.physics.loops.loop import Sampling, straight_step
 from seatrial.physics.loops.structures import fin_loop
 
 BLOCKS = [
@@ -51,6 +59,10 @@ def test_slow_terms_hold_with_the_sign_of_their_share() -> None:
     loop, reversed_loop = (heading_loop(one, one, ()) for one in (plant, plant.scaled(-1.0)))
     assert holding_terms(loop) == ((False, True, False), 1.0)
     assert holding_terms(reversed_loop) == ((False, True, False), -1.0)
+    blocks = discrete_blocks(replace(reversed_loop, sampling=Sampling(0.1)))
+    assert [(block.role, block.gain, block.hold) for block in blocks] == [
+        ("term", "KP", 0), ("term", "KI", -1), ("term", "KD", 0), ("filter", "", 0),
+    ]  # fmt: skip
 
 
 def test_no_block_rings_at_the_default_sample_time() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from seatrial.control.ship import jacobian_at
 from seatrial.core.equations import Model
-from seatrial.core.results.station import StationCapability
+from seatrial.core.results.station import StationCapability, StationThruster
 from seatrial.core.values import Array, InputError
 from seatrial.physics.models.thrust_orders import (
     inertia_matrix,
@@ -241,13 +241,13 @@ def generalised_inverse(craft: StationCraft) -> Array:
     return spread[:, None] * B.T @ np.linalg.inv(B @ (spread[:, None] * B.T))
 
 
-def inverse_rows(craft: StationCraft, inverse: Array) -> Array:
-    """Return an inverse (m, 3) with two rows for each thruster, (n, 6): zeros in the second of a fixed one."""
-    rows = np.zeros((len(craft.thrusters), 2, 3))
-    for i in range(len(craft.thrusters)):
-        components = [k for k, owner in enumerate(craft.owner) if owner == i]
-        rows[i, : len(components)] = inverse[components]
-    return rows.reshape(len(craft.thrusters), -1)
+def thruster_orders(craft: StationCraft, inverse: Array) -> tuple[StationThruster, ...]:
+    """Return how a controller orders each thruster: by its rows of an inverse (m, 3) and its table."""
+    owner = np.array(craft.owner)
+    return tuple(
+        StationThruster(thruster.name, inverse[owner == i], table.share, table.thrust)
+        for i, (thruster, table) in enumerate(zip(craft.thrusters, craft.tables, strict=True))
+    )
 
 
 def share_given(craft: StationCraft, inverse: Array, forces: Array) -> Array:

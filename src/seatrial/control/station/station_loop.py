@@ -19,6 +19,7 @@ from seatrial.control.ship import jacobian_at
 from seatrial.control.station.craft import StationCraft
 from seatrial.core.values import Array
 from seatrial.physics.hydro.excitation import Complex
+from seatrial.physics.simulate.craft_control import StationGains
 
 DAMPING = 1.0  # relative damping of the pole pair of each degree of freedom: no overshoot; chosen
 INTEGRAL_SHARE = (
@@ -29,16 +30,6 @@ FILTER_SHARE = 0.1  # time constant of the velocity's filter times the natural f
 _REFINEMENTS, _INSIDE = 6, 1e-3
 _HOLDING_ROUNDS = 6  # after which thrusters, whose thrust falls with the water's speed, hold the current; chosen
 _TURN = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])  # dR'/dpsi at psi = 0
-
-
-@dataclass(frozen=True, eq=False)
-class StationGains:
-    """tau = -K_p R'e - K_i R' int(e) - K_d v: matrices (3, 3); lag: of the filter of v in each axis [s], (3,)."""
-
-    KP: Array
-    KI: Array
-    KD: Array
-    lag: Array
 
 
 def place_poles(inertia: Array, damping: Array, omega: Array) -> StationGains:

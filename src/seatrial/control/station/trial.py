@@ -15,7 +15,7 @@ from seatrial.control.simulation import (
     time_to_know,
     wave_components,
 )
-from seatrial.control.station.craft import StationCraft, inverse_rows
+from seatrial.control.station.craft import StationCraft, thruster_orders
 from seatrial.control.station.station_loop import FILTER_SHARE, INTEGRAL_SHARE, StationLoop, station_point
 from seatrial.control.task import Seaway
 from seatrial.core.results.station import StationTrial
@@ -25,7 +25,7 @@ from seatrial.physics.hydro.excitation import Complex
 from seatrial.physics.loops import HullFactor, YawAcceleration
 from seatrial.physics.loops.loop import Sampling
 from seatrial.physics.models.thruster_layout import MIN_LAG
-from seatrial.physics.simulate.craft_control import StationController, StationRun, ThrusterOrders, keep_station
+from seatrial.physics.simulate.craft_control import StationController, StationRun, keep_station
 from seatrial.physics.simulate.replay import series_record
 
 # What drives a craft off its station: water that moves and forces, as spectra for the loop and series in time.
@@ -281,14 +281,8 @@ class StationSimulator:
 
 def sampled_controller(loop: StationLoop, sampling: Sampling) -> StationController:
     """Return the controller of a loop as it runs on board."""
-    craft, g = loop.craft, loop.gains
-    rows = inverse_rows(craft, loop.inverse)
-    orders = [
-        ThrusterOrders(thruster, row, table.share, table.thrust)
-        for thruster, row, table in zip(craft.thrusters, rows, craft.tables, strict=True)
-    ]
-    longest = max(_STEP_SHARE * float(craft.lags.min()), MIN_LAG)
-    return StationController(g.KP, g.KI, g.KD, g.lag, sampling, orders, longest)
+    longest = max(_STEP_SHARE * float(loop.craft.lags.min()), MIN_LAG)
+    return StationController(loop.gains, sampling, thruster_orders(loop.craft, loop.inverse), longest)
 
 
 def draw_craft(craft: StationCraft, draws: int, seed: int) -> list[StationCraft]:

@@ -40,7 +40,6 @@ from seatrial.core.results.station import (
     StationKeeping,
     StationMargins,
     StationPrecision,
-    StationThruster,
 )
 from seatrial.core.values import Array, InputError
 from seatrial.physics.hydro.excitation import Complex
@@ -349,7 +348,7 @@ def tune_station(
         margins=_margins(chosen.loops),
         predicted=chosen.precision,
         front=chosen.front,
-        thrusters=_thrusters(craft, inverse),
+        thrusters=controller.thrusters,
         capability=holds,
         trial=trial,
     )
@@ -407,11 +406,3 @@ def _margins(loops: Sequence[StationLoop]) -> StationMargins:
     finer = np.geomspace(loops[0].frequencies[0], loops[0].frequencies[-1], _MARGIN_SAMPLES)
     surge, sway, yaw, joint = np.max([replace(loop, frequencies=finer).peaks() for loop in loops], axis=0).tolist()
     return StationMargins(surge, sway, yaw, joint, min(loop.tolerated_dead_time - loop.dead_time for loop in loops))
-
-
-def _thrusters(craft: StationCraft, inverse: Array) -> tuple[StationThruster, ...]:
-    owner = np.array(craft.owner)
-    return tuple(
-        StationThruster(thruster.name, inverse[owner == i], table.share, table.thrust)
-        for i, (thruster, table) in enumerate(zip(craft.thrusters, craft.tables, strict=True))
-    )

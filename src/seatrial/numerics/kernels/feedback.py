@@ -22,12 +22,12 @@ from seatrial.numerics.kernels.linear import advance
 
 # Integration with a command in the loop, held over its step.
 
-# places in the memory
+# places in the memory: what every controller that samples has, then those of one that moves an actuator
 (
-    COUNT, OUTPUT, ACTUATOR, DISTURBED_INPUT, TRIM, EFFECT, LIMIT, SLEW, STALL, LOSS, STEP, ANGLE, SERIES, EVERY,
-    SENSOR, SENSOR_ORDER, SERVO, SERVO_ORDER, BLOCKS, TERM_COUNT, FILTER_COUNT, QUEUE, QUEUE_SIZE, NOISE, RESOLUTION,
-    SAMPLE_SLEW, HELD_ORDER, ORDER_EXCESS, LAST_ORDER, READING_ERROR, HEAD_SIZE,
-) = range(31)  # fmt: skip
+    COUNT, STEP, EVERY, LAW, QUEUE, QUEUE_SIZE, NOISE, RESOLUTION, SERIES, ANSWERS, DISTURBED_INPUT, TRACK, OUTPUT,
+    ACTUATOR, TRIM, EFFECT, LIMIT, SLEW, STALL, LOSS, ANGLE, SENSOR, SENSOR_ORDER, SERVO, SERVO_ORDER, TERM_COUNT,
+    FILTER_COUNT, SAMPLE_SLEW, HELD_ORDER, ORDER_EXCESS, LAST_ORDER, READING_ERROR, HEAD_SIZE,
+) = range(33)  # fmt: skip
 
 _WORK_ROWS = 6  # scratch of a step: x, y and the four stages of `rk4_step`
 
@@ -65,6 +65,37 @@ def steer(f, command, x0, u_start, p, memory, dt, x_out, u_out, exact=_NOT_LINEA
     """
     work = np.empty((_WORK_ROWS, len(x0)))
     return _steer(f, command, x0, np.append(u_start, 1.0), p, memory, dt, *exact, x_out, u_out, work)
+
+
+@njit(inline="always", **OPTIONS)
+def given(memory, row, k):
+    """Return what is given to the loop at a step: its references and what disturbs it, a row each."""
+    return memory[int(memory[SERIES]) + row * int(memory[COUNT]) + k]
+
+
+@njit(inline="always", **OPTIONS)
+def answer(memory, row, k, value):
+    """Write what the loop answers at a step, in the row of that answer; there is one step more than is given."""
+    memory[int(memory[ANSWERS]) + row * (int(memory[COUNT]) + 1) + k] = value
+
+
+@njit(inline="always", **OPTIONS)
+def read(memory, value, k):
+    """Return a value as the sample of a step reads it: with that sample's noise, in steps."""
+    noisy, unit = value + memory[int(memory[NOISE]) + k // int(memory[EVERY])], memory[RESOLUTION]
+    return unit * math.floor(noisy / unit + 0.5) if unit > 0.0 else noisy
+
+
+@njit(inline="always", **OPTIONS)
+def late(memory, place, k, order):
+    """Return the order that acts in a step and let the present one wait for the dead time; place: of the order."""
+    size = int(memory[QUEUE_SIZE])
+    if size == 0:
+        return order
+    slot = int(memory[QUEUE]) + place * size + k % size
+    acting = memory[slot]
+    memory[slot] = order
+    return acting
 
 
 @njit(inline="always", **OPTIONS)
@@ -126,6 +157,8 @@ def _row_times_states(memory, start, states, n):
 
 # The command of a controller that samples: difference equations, an order that is held and acts late, and limits.
 
+REFERENCE, DISTURBANCE, FED_FORWARD = range(3)
+"""Rows of what is given; the answer is the actuator's angle."""
 # places of a block in the memory: order, gain, sign of what it holds, last output, and where its numbers begin
 BLOCK_ORDER, BLOCK_GAIN, BLOCK_HOLDS, BLOCK_LAST, BLOCK_HEAD = range(5)
 
@@ -146,15 +179,6 @@ def _answer(memory, law, n, value):
     """Return what a law shows of a value now: c x + d value."""
     c = law + n * n + 2 * n
     return memory[c + n] * value + _row_times_states(memory, c, law + law_size(n), n)
-
-
-@njit(inline="always", **OPTIONS)
-def _misread(memory, output, noise):
-    """Return by how much a sample of the output is read too small."""
-    read, unit = output + noise, memory[RESOLUTION]
-    if unit > 0.0:
-        read = unit * math.floor(read / unit + 0.5)
-    return output - read
 
 
 @njit(inline="always", **OPTIONS)
@@ -181,7 +205,7 @@ def _through(memory, block, x, push):
 @njit(inline="always", **OPTIONS)
 def _ordered(memory, error, fed_forward):
     """Return the order of a sample: terms in parallel, filters in a row, what is fed forward."""
-    excess, order, at = memory[ORDER_EXCESS], 0.0, int(memory[BLOCKS])
+    excess, order, at = memory[ORDER_EXCESS], 0.0, int(memory[LAW])
     for _ in range(int(memory[TERM_COUNT])):
         gain = memory[at + BLOCK_GAIN]
         order += gain * _through(memory, at, error, excess * gain)
@@ -207,26 +231,16 @@ def _served(memory, order):
 @kernel(COMMAND_SIGNATURE, **LEAN)
 def sampled_controller(_, x, memory, u):
     """Sample where it is time, let the order wait, and move the actuator within its limits."""
-    count, k, every = int(memory[COUNT]), int(memory[STEP]), int(memory[EVERY])
-    reference = int(memory[SERIES])
-    disturbance = reference + count
-    fed_forward = disturbance + count
-    angles = fed_forward + count
-    output = x[int(memory[OUTPUT])]
-    error = memory[reference + k] - output
+    k = int(memory[STEP])
+    output, disturbance = x[int(memory[OUTPUT])], given(memory, DISTURBANCE, k)
+    error = given(memory, REFERENCE, k) - output
     _sense(memory, error)
-    if k % every == 0:
-        misread = _misread(memory, output, memory[int(memory[NOISE]) + k // every])
+    if k % int(memory[EVERY]) == 0:
+        misread = output - read(memory, output, k)
         memory[READING_ERROR] = misread
         seen = _answer(memory, int(memory[SENSOR]), int(memory[SENSOR_ORDER]), error + misread)
-        memory[LAST_ORDER], excess = _ordered(memory, seen, memory[fed_forward + k])
-        memory[ORDER_EXCESS] = excess
-    queue, size = int(memory[QUEUE]), int(memory[QUEUE_SIZE])
-    late = memory[LAST_ORDER]
-    if size > 0:
-        late = memory[queue + k % size]
-        memory[queue + k % size] = memory[LAST_ORDER]
-    begun, wanted = _served(memory, late)
+        memory[LAST_ORDER], memory[ORDER_EXCESS] = _ordered(memory, seen, given(memory, FED_FORWARD, k))
+    begun, wanted = _served(memory, late(memory, 0, k, memory[LAST_ORDER]))
     begun, wanted = clamp(begun, memory[LIMIT]), clamp(wanted, memory[LIMIT])
     angle, slew = memory[ANGLE], memory[SLEW]
     new = _followed(angle, wanted, memory[LIMIT], slew)
@@ -237,11 +251,11 @@ def sampled_controller(_, x, memory, u):
     place, disturbed = int(memory[ACTUATOR]), int(memory[DISTURBED_INPUT])
     u[place] = memory[TRIM] + memory[EFFECT] * lift
     if disturbed == place:
-        u[place] += memory[disturbance + k]
+        u[place] += disturbance
     elif disturbed >= 0:
-        u[disturbed] = memory[disturbance + k]
+        u[disturbed] = disturbance
     memory[ANGLE] = new
-    memory[angles + k + 1] = new
+    answer(memory, 0, k + 1, new)
     memory[STEP] = k + 1.0
 
 
@@ -250,8 +264,8 @@ def sampled_controller(_, x, memory, u):
 # places in the memory
 (
     NORTH, EAST, LOOKAHEAD, INTEGRAL_GAIN, INTEGRAL, ORDER, ORDER_STEP, LEG, CORNER, TURN, ACCEPTANCE,
-    INTERVAL, NEW_LEG, TRACK_HEAD,
-) = range(14)  # fmt: skip
+    INTERVAL, TRACK_HEAD,
+) = range(13)  # fmt: skip
 
 
 @kernel(COMMAND_SIGNATURE, **LEAN)
@@ -263,18 +277,18 @@ def track_follower(t, x, memory, u):
     Craft Hydrodynamics and Motion Control, eq. (10.73)). The first leg runs north; the next begins at CORNER, turned by
     TURN, and is taken within ACCEPTANCE of it along the track.
     """
-    count, k, every, reference = int(memory[COUNT]), int(memory[STEP]), int(memory[EVERY]), int(memory[SERIES])
-    block = reference + 4 * count + 1
+    k, block = int(memory[STEP]), int(memory[TRACK])
     north, east = x[int(memory[block + NORTH])], x[int(memory[block + EAST])]
     if memory[block + LEG] == 0.0 and memory[block + CORNER] - north < memory[block + ACCEPTANCE]:
-        memory[block + LEG], memory[block + NEW_LEG] = 1.0, k
+        memory[block + LEG] = 1.0
     course, error = 0.0, east
     if memory[block + LEG] == 1.0:
         course = memory[block + TURN]
         # distance to starboard of the leg (Fossen 2011, eq. (10.58))
         error = -(north - memory[block + CORNER]) * math.sin(course) + east * math.cos(course)
-    memory[block + TRACK_HEAD + k] = error
-    if k % every != 0:
+    answer(memory, 1, k, error)
+    answer(memory, 2, k, memory[block + LEG])
+    if k % int(memory[EVERY]) != 0:
         sampled_controller(t, x, memory, u)
         return
     delta, total = memory[block + LOOKAHEAD], error + memory[block + INTEGRAL_GAIN] * memory[block + INTEGRAL]
@@ -282,5 +296,5 @@ def track_follower(t, x, memory, u):
     before = memory[block + ORDER]
     order = before + clamp(course - math.atan(total / delta) - before, memory[block + ORDER_STEP])
     memory[block + ORDER] = order
-    memory[reference + k] = order
+    memory[int(memory[SERIES]) + k] = order
     sampled_controller(t, x, memory, u)

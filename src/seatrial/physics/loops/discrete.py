@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from seatrial.core.results.tuning import DiscreteBlock
 from seatrial.core.values import InputError
 from seatrial.physics.loops.autopilot import working_frequency
 from seatrial.physics.loops.loop import Block, TransferLoop, in_series
@@ -59,6 +60,17 @@ def holding_terms(loop: TransferLoop) -> tuple[tuple[bool, ...], float]:
     below = max(slow, _AT_ORIGIN)
     holds = tuple(bool(t.block.order) and float(np.abs(t.block.poles).min()) < below for t in loop.terms)
     return holds, float(np.prod([np.sign(block.gain) for block in (*loop.filters, *loop.servo)]))
+
+
+def discrete_blocks(loop: TransferLoop) -> tuple[DiscreteBlock, ...]:
+    """Return terms, then filters, of a sampled loop as the difference equations that run on board and in simulation."""
+    T, (holds, sign) = loop.required_sampling.sample_s, holding_terms(loop)
+    terms = (
+        DiscreteBlock("term", term.block.name, term.gain, *difference_equation(term.block, T), int(sign) if held else 0)
+        for term, held in zip(loop.terms, holds, strict=True)
+    )
+    filters = (DiscreteBlock("filter", one.name, "", *difference_equation(one, T), 0) for one in loop.filters)
+    return (*terms, *filters)
 
 
 def default_sample_time(loop: TransferLoop) -> float:

@@ -64,8 +64,8 @@ class Block:
 
     def frequency_response(self, omega: Array) -> Complex:
         """Return the frequency response at omega [rad/s], any shape."""
-        s = 1j * np.asarray(omega, dtype=np.float64)
-        return np.asarray(np.polyval(self.num, s) / np.polyval(self.den, s), dtype=np.complex128)
+        s = np.asarray(1j * np.asarray(omega, dtype=np.float64), dtype=np.complex128)
+        return np.asarray(_polynomial(self.num, s) / _polynomial(self.den, s), dtype=np.complex128)
 
     def scaled(self, factor: float) -> "Block":
         """Return the block times a number."""
@@ -77,6 +77,15 @@ class Block:
             tuple(c * factor ** (len(side) - 1 - i) for i, c in enumerate(side)) for side in (self.num, self.den)
         )
         return Block(self.name, num, den, self.source)
+
+
+def _polynomial(coefficients: tuple[float, ...], s: Complex) -> Complex:
+    """Return a polynomial, highest power first, at points of any shape, by Horner's rule in place."""
+    value = np.full_like(s, coefficients[0])
+    for coefficient in coefficients[1:]:
+        value *= s
+        value += coefficient
+    return value
 
 
 def in_series(name: str, blocks: Iterable[Block]) -> Block:
@@ -182,18 +191,17 @@ class Sampling:
 
 def held(blocks: tuple[Block, ...], sampling: Sampling) -> Block:
     """Return blocks in a row behind hold and dead time, from order to sample, as a block in w."""
-    return _held(tuple((block.num, block.den) for block in blocks), sampling)
+    return _held(blocks, sampling)
 
 
 @lru_cache(maxsize=_KEPT)
-def _held(sides: tuple[tuple[tuple[float, ...], tuple[float, ...]], ...], sampling: Sampling) -> Block:
-    made = [Block("part", num, den) for num, den in sides]
-    A, b, c, d = _in_a_row(made)
+def _held(blocks: tuple[Block, ...], sampling: Sampling) -> Block:
+    A, b, c, d = _in_a_row(blocks)
     T, whole, rest = sampling.sample_s, *_split(sampling)
     stepped, late, now = _stepped(A, b, T, rest)
     n, is_late = len(b), rest > 0.0
     poles: Complex = np.concatenate(
-        [np.empty(0, dtype=np.complex128), *(np.tanh(0.5 * T * block.poles) for block in made)]
+        [np.empty(0, dtype=np.complex128), *(np.tanh(0.5 * T * block.poles) for block in blocks)]
     )
     if is_late:
         stepped = np.block([[stepped, late[:, None]], [np.zeros((1, n + 1))]])
@@ -217,7 +225,7 @@ def _held(sides: tuple[tuple[tuple[float, ...], tuple[float, ...]], ...], sampli
     return Block("held", tuple((num / scale).tolist()), tuple((den / scale).tolist()))
 
 
-def _in_a_row(blocks: list[Block]) -> tuple[Array, Array, Array, float]:
+def _in_a_row(blocks: tuple[Block, ...]) -> tuple[Array, Array, Array, float]:
     """Return A, b, c, d of blocks one behind the other."""
     A, b, c, d = np.zeros((0, 0)), np.zeros(0), np.zeros(0), 1.0
     for block in blocks:
@@ -458,13 +466,17 @@ class TransferLoop:
 
     def controller_terms(self, omega: Array) -> Complex:
         """Return what each gain multiplies between y and a, shape (g, n), at omega (n,) [rad/s]."""
-        return self._term_responses(omega) * self._around_response(omega)
+        return self.term_responses(omega) * self._around_response(omega)
 
     def open_loop_terms(self, omega: Array) -> Complex:
         """Return L_i, shape (g, n): L = sum gain_i L_i."""
+        return self.term_responses(omega) * self.path_response(omega)
+
+    def path_response(self, omega: Array) -> Complex:
+        """Return everything of L but terms and filters, (n,), at omega (n,) [rad/s]."""
         if self.sampling is None:
-            return self.controller_terms(omega) * self.plant.frequency_response(omega)
-        return self._term_responses(omega) * self._held.frequency_response(self.sampling.in_w(omega))
+            return np.asarray(self._around_response(omega) * self.plant.frequency_response(omega), dtype=np.complex128)
+        return self._held.frequency_response(self.sampling.in_w(omega))
 
     def plant_response(self, omega: Array) -> Complex:
         """Return P at omega (n,) [rad/s] so that L = P K: of a sampled loop what of the plant its samples show."""
@@ -486,8 +498,8 @@ class TransferLoop:
         moving = held((*self.servo, self.plant), sampling).frequency_response(w)
         return moving * misread, moved * misread
 
-    def _term_responses(self, omega: Array) -> Complex:
-        """Return terms and filters, (g, n)."""
+    def term_responses(self, omega: Array) -> Complex:
+        """Return terms and filters, shape (g, n), at omega (n,) [rad/s]."""
         at = omega if self.sampling is None else self.sampling.in_w(omega)
         common = self._filtered.frequency_response(at)
         return np.stack([term.block.frequency_response(at) * common for term in self.terms])

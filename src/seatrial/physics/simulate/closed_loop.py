@@ -1,20 +1,21 @@
 """A loop in time: a controller that samples, on any model, within its actuator's limits."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
 
 from seatrial.core.equations import Model
+from seatrial.core.results.tuning import DiscreteBlock
 from seatrial.core.values import Array, InputError, Provenance, Record, frozen, spelling_hint
 from seatrial.numerics.kernels import feedback
 from seatrial.numerics.kernels.feedback import sampled_controller
 from seatrial.numerics.kernels.integrate import evaluate
 from seatrial.numerics.kernels.linear import propagators, replay
 from seatrial.physics.loops import Block, TransferLoop
-from seatrial.physics.loops.discrete import difference_equation, holding_terms
+from seatrial.physics.loops.discrete import discrete_blocks
 from seatrial.physics.loops.loop import Sampling, controllable_form, in_series, straight_step
 from seatrial.physics.loops.loop_states import StateSpace
 from seatrial.physics.simulate.replay import commanded, record_of
@@ -58,53 +59,80 @@ def steps_a_sample(sampling: Sampling, dt: float) -> int:
     return every
 
 
-def sample_noise(sampling: Sampling, count: int, seed: int) -> Array:
+def sample_noise(sampling: Sampling, count: int, seed: int = 0) -> Array:
     """Return the noise of so many samples, (n,)."""
     if not sampling.noise:
         return np.zeros(count)
     return sampling.noise * np.random.default_rng([seed, _NOISE_STREAM]).standard_normal(count)
 
 
-def sampled_laws(loop: TransferLoop, gains: Array, dt: float) -> tuple[Array, Mapping[int, float]]:
-    """Return what `sampled_controller` reads of the loop behind the head of its memory, and the head's entries for it.
+@dataclass(frozen=True, eq=False)
+class LoopLaw:
+    """A controller that samples, as its command reads it.
 
-    The last entries are the queue of the dead time; the noise of the samples stands behind it.
+    Attributes:
+        command: a kernel of `COMMAND_SIGNATURE`.
+        parts: what stands behind the head of its memory, by the entry of the head that says where.
+        head: its other entries; answers: how many series it writes.
     """
-    sampling = loop.required_sampling
-    T, every = sampling.sample_s, steps_a_sample(sampling, dt)
+
+    command: Callable[..., None]
+    parts: Mapping[int, Array]
+    head: Mapping[int, float]
+    answers: int = 1
+
+    def sampled(self, sampling: Sampling, dt: float, noise: Array, waiting: Array) -> "LoopLaw":
+        """Return the law at a sample time; noise: of each sample; waiting: orders (w,) that act before the first."""
+        late = round(sampling.dead_time / dt)
+        head = {
+            feedback.EVERY: steps_a_sample(sampling, dt),
+            feedback.QUEUE_SIZE: late,
+            feedback.RESOLUTION: sampling.resolution,
+        }
+        parts = {feedback.QUEUE: np.repeat(waiting, late), feedback.NOISE: noise}
+        return replace(self, parts={**self.parts, **parts}, head={**self.head, **head})
+
+    def run(
+        self, model: Model, dt: float, given: Array, start: Array, inputs: Array, subject: str
+    ) -> tuple[Array, Array]:
+        """Return states (n, nx) and answers (a, n) of a model under the law: the one simulation of loops in time.
+
+        given: references and disturbances as the command reads them, (r, n); start: (nx,); inputs: (nu,), held but
+        for what the command sets.
+
+        Raises:
+            DivergedError: the loop runs away; when, and which state.
+        """
+        count = given.shape[1]
+        parts = {
+            **self.parts, feedback.SERIES: given.ravel(), feedback.ANSWERS: np.zeros(self.answers * (count + 1))
+        }  # fmt: skip
+        places = np.cumsum([feedback.HEAD_SIZE, *map(len, parts.values())])
+        head = np.zeros(feedback.HEAD_SIZE)
+        head[[*self.head, *parts, feedback.COUNT]] = [*self.head.values(), *places[:-1], count]
+        memory = np.concatenate([head, *parts.values()])
+        states, _ = commanded(model, self.command, memory, dt, count, start, inputs, subject)
+        return states, memory[places[-2] :].reshape(self.answers, count + 1)[:, :count]
+
+
+def transfer_law(loop: TransferLoop, gains: Array, dt: float) -> LoopLaw:
+    """Return the law of a loop's controller between its sensor and its servo."""
     sensor, sensor_order = _stepped(in_series("sensor", loop.sensor), dt)
     servo, servo_order = _stepped(in_series("servo", loop.servo), dt)
-    holds, sign = holding_terms(loop)
-    terms = [
-        _block(term.block, T, float(gain), sign if held else 0.0)
-        for gain, term, held in zip(gains, loop.terms, holds, strict=True)
-    ]
-    blocks = np.concatenate([*terms, *(_block(block, T, 1.0, 0.0) for block in loop.filters)])
-    queue = round(sampling.dead_time / dt)
-    servo_at = feedback.HEAD_SIZE + len(sensor)
-    blocks_at = servo_at + len(servo)
-    queue_at = blocks_at + len(blocks)
-    values = {
-        feedback.EVERY: every,
-        feedback.SENSOR: feedback.HEAD_SIZE,
+    factors = [*np.asarray(gains).tolist(), *[1.0] * len(loop.filters)]
+    blocks = np.concatenate([_numbers(block, gain) for block, gain in zip(discrete_blocks(loop), factors, strict=True)])
+    head = {
         feedback.SENSOR_ORDER: sensor_order,
-        feedback.SERVO: servo_at,
         feedback.SERVO_ORDER: servo_order,
-        feedback.BLOCKS: blocks_at,
         feedback.TERM_COUNT: len(loop.terms),
         feedback.FILTER_COUNT: len(loop.filters),
-        feedback.QUEUE: queue_at,
-        feedback.QUEUE_SIZE: queue,
-        feedback.NOISE: queue_at + queue,
-        feedback.RESOLUTION: sampling.resolution,
     }
-    return np.concatenate([sensor, servo, blocks, np.zeros(queue)]), values
+    return LoopLaw(sampled_controller, {feedback.SENSOR: sensor, feedback.SERVO: servo, feedback.LAW: blocks}, head)
 
 
-def _block(block: Block, T: float, gain: float, holds: float) -> Array:
-    b, a = difference_equation(block, T)
-    n = len(a) - 1
-    return np.concatenate([[n, gain, holds, 0.0], b, a, np.zeros(n)])
+def _numbers(block: DiscreteBlock, gain: float) -> Array:
+    n = len(block.a) - 1
+    return np.concatenate([[n, gain, block.hold, 0.0], block.b, block.a, np.zeros(n)])
 
 
 @lru_cache(maxsize=_KEPT)
@@ -179,7 +207,6 @@ class ActuatorLimits:
 
 
 UNLIMITED = ActuatorLimits()
-_NOISE_SEED = 0  # of the samples' noise where none is given; chosen
 
 
 @dataclass(frozen=True, eq=False)
@@ -263,40 +290,22 @@ class ClosedLoop:
                 "disturbance, reference and feed-forward of a closed loop need the same number of samples, two or "
                 "more, without gaps"
             )
-        memory = self.controller_memory(disturbance, limits, wanted, added, noise)
-        states, _ = commanded(
-            self.model, sampled_controller, memory, self.dt, count, self.start, self.inputs, f"loop '{self.loop.name}'"
-        )
-        return states, memory[self._angles(memory, count)]
+        law = self.law(limits, count, noise)
+        states, answers = law.run(
+            self.model, self.dt, self.given(disturbance, wanted, added), self.start, self.inputs,
+            f"loop '{self.loop.name}'",
+        )  # fmt: skip
+        return states, answers[0]
 
-    def _angles(self, memory: Array, count: int) -> slice:
-        """Return where the actuator's angles at the samples stand."""
-        first = int(memory[feedback.SERIES]) + 3 * count
-        return slice(first, first + count)
-
-    def controller_memory(
-        self,
-        disturbance: Array,
-        limits: ActuatorLimits,
-        reference: Array,
-        fed_forward: Array,
-        noise: Array | None = None,
-    ) -> Array:
-        """Return the memory of `sampled_controller` for series (n,), checked by the caller.
-
-        noise: of each sample that the controller takes.
-        """
-        count, sampling = len(disturbance), self.loop.required_sampling
-        laws, own = self._laws
+    def law(self, limits: ActuatorLimits, count: int, noise: Array | None = None) -> LoopLaw:
+        """Return the law with the limits of its actuator for so many steps; noise: of each sample that it takes."""
+        sampling, place = self.loop.required_sampling, self._input_index(self.actuator)
         samples = -(-count // steps_a_sample(sampling, self.dt))
-        heard = sample_noise(sampling, samples, _NOISE_SEED) if noise is None else noise[:samples]
-        body = np.concatenate([laws, heard])
-        place, disturbed = self._input_index(self.actuator), self._input_index(self.disturbance_input)
-        values = {
-            feedback.COUNT: count,
+        heard = sample_noise(sampling, samples) if noise is None else noise[:samples]
+        head = {
             feedback.OUTPUT: self.model.states.index(self.output),
             feedback.ACTUATOR: place,
-            feedback.DISTURBED_INPUT: disturbed,
+            feedback.DISTURBED_INPUT: self._input_index(self.disturbance_input),
             feedback.TRIM: self.inputs[place],
             feedback.EFFECT: self._sign(place) * self.effectiveness,
             feedback.LIMIT: limits.limit,
@@ -304,19 +313,21 @@ class ClosedLoop:
             feedback.SAMPLE_SLEW: limits.rate * sampling.sample_s,
             feedback.STALL: limits.stall,
             feedback.LOSS: limits.loss,
-            feedback.SERIES: feedback.HEAD_SIZE + len(body),
-            **own,
         }
-        head = np.zeros(feedback.HEAD_SIZE)
-        head[list(values)] = list(values.values())
+        law = self._law.sampled(sampling, self.dt, heard, np.zeros(1))
+        return replace(law, head={**law.head, **head})
+
+    def given(self, disturbance: Array, reference: Array, fed_forward: Array) -> Array:
+        """Return the rows that the law reads of series (n,), (3, n)."""
+        place, disturbed = self._input_index(self.actuator), self._input_index(self.disturbance_input)
         trim = self.inputs[disturbed] if disturbed not in (-1, place) else 0.0
         met = trim + self._sign(disturbed) * hold_equivalent(np.asarray(disturbance, dtype=np.float64))
-        return np.concatenate([head, body, reference, met, fed_forward, np.zeros(count + 1)])
+        return np.stack([reference, met, fed_forward])
 
     @cached_property
-    def _laws(self) -> tuple[Array, Mapping[int, float]]:
-        """What `sampled_controller` reads of the loop, and the entries of its head, the same in every run."""
-        return sampled_laws(self.loop, self.gains, self.dt)
+    def _law(self) -> LoopLaw:
+        """The controller's law, the same in every run."""
+        return transfer_law(self.loop, self.gains, self.dt)
 
     def _input_index(self, name: str) -> int:
         """Return the place of an input; -1 of none."""

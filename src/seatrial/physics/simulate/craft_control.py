@@ -1,12 +1,12 @@
 """Craft under control: a step of heading, a track, a place that is kept."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.core.equations import Model
+from seatrial.core.results.station import StationThruster
 from seatrial.core.values import Array, DivergedError
 from seatrial.numerics.kernels import feedback
 from seatrial.numerics.kernels import station as keeper
@@ -14,8 +14,17 @@ from seatrial.numerics.kernels.feedback import clamp
 from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE, OPTIONS, kernel
 from seatrial.physics.loops.loop import Sampling
 from seatrial.physics.models.thrust_orders import OUTSIDE_FORCES
-from seatrial.physics.models.thruster_layout import MIN_LAG, AngleInput, Thruster
-from seatrial.physics.simulate.closed_loop import UNLIMITED, ActuatorLimits, ClosedLoop, sample_noise, simulation_step
+from seatrial.physics.models.thruster_layout import MIN_LAG, AngleInput, Thruster, layout_of
+from seatrial.physics.simulate.closed_loop import (
+    UNLIMITED,
+    ActuatorLimits,
+    ClosedLoop,
+    LoopLaw,
+    hold_equivalent,
+    sample_noise,
+    simulation_step,
+    steps_a_sample,
+)
 from seatrial.physics.simulate.replay import commanded
 
 # A craft that follows a step of heading under proportional-derivative control.
@@ -122,7 +131,6 @@ def follow_track(
     """
     count, model = len(disturbance), closed.model
     heading = float(closed.start[model.states.index(closed.output)])
-    memory = closed.controller_memory(disturbance, limits, np.full(count, heading), np.zeros(count))
     head = np.zeros(feedback.TRACK_HEAD)
     interval = closed.loop.required_sampling.sample_s
     values = {
@@ -138,44 +146,39 @@ def follow_track(
         feedback.INTERVAL: interval,
     }
     head[list(values)] = list(values.values())
-    memory = np.concatenate([memory, head, np.zeros(count)])
-    states, _ = commanded(
-        model, feedback.track_follower, memory, closed.dt, count, closed.start, closed.inputs,
-        f"loop '{closed.loop.name}' on a track",
+    law = closed.law(limits, count)
+    law = replace(law, command=feedback.track_follower, parts={**law.parts, feedback.TRACK: head}, answers=3)
+    states, (angle, error, leg) = law.run(
+        model, closed.dt, closed.given(disturbance, np.full(count, heading), np.zeros(count)), closed.start,
+        closed.inputs, f"loop '{closed.loop.name}' on a track",
     )  # fmt: skip
-    behind = len(memory) - count - feedback.TRACK_HEAD
-    begun = int(memory[behind + feedback.NEW_LEG])
-    error = memory[len(memory) - count :]
-    return TrackRun(states, memory[behind - count - 1 : behind - 1], error, begun if begun > 0 else count)
+    return TrackRun(states, angle, error, int(np.searchsorted(leg, 1.0)))
 
 
 # A craft with thrusters that keeps its place, simulated by its nonlinear model within its thrusters' limits.
 
 
 @dataclass(frozen=True, eq=False)
-class ThrusterOrders:
-    """How a controller orders one thruster: rows of the inverse (6,), table of share (k,) over rising thrust (k,)."""
-
-    thruster: Thruster
-    rows: Array
-    share: Array
-    thrust: Array
-
-
-@dataclass(frozen=True, eq=False)
-class StationController:
-    """A sampled PID in body axes: gains (3, 3), filter lags [s] (3,), how it samples, the thrusters.
-
-    Every sample: v by Tustin's rule from the moves of the pose, the integral by trapezoids, kept while forces are cut.
-    sampling: noise and resolution are those of the heading [rad]. step: of the simulation at most [s].
-    """
+class StationGains:
+    """tau = -K_p R'e - K_i R' int(e) - K_d v: matrices (3, 3); lag: of the filter of v in each axis [s], (3,)."""
 
     KP: Array
     KI: Array
     KD: Array
     lag: Array
+
+
+@dataclass(frozen=True, eq=False)
+class StationController:
+    """A sampled PID in body axes: gains, how it samples, how each thruster is ordered.
+
+    Every sample: v by Tustin's rule from the moves of the pose, the integral by trapezoids, kept while forces are cut.
+    sampling: noise and resolution are those of the heading [rad]. step: of the simulation at most [s].
+    """
+
+    gains: StationGains
     sampling: Sampling
-    thrusters: Sequence[ThrusterOrders]
+    thrusters: tuple[StationThruster, ...]
     step: float = MIN_LAG
 
     @property
@@ -183,12 +186,26 @@ class StationController:
         """The step of the simulation [s]: it divides sample and dead time."""
         return simulation_step(self.sampling, self.step)
 
+    def law(self, model: Model) -> LoopLaw:
+        """Return the law that keeps a model of `with_outside_forces` on station."""
+        past, forward = filter_coefficients(self.gains.lag, self.sampling.sample_s)
+        pose = [model.states.index(name) for name in ("x0", "y0", "psi")]
+        at_rest, n = np.zeros(keeper.POSE - keeper.INTEGRAL), len(self.thrusters)
+        sizes = [0.0, self.sampling.sample_s, n, len(self.thrusters[0].share)]
+        matrices = [matrix.ravel() for matrix in (self.gains.KP, self.gains.KI, self.gains.KD)]
+        layout = layout_of(model).thrusters
+        traits = [_traits(model, *pair) for pair in zip(layout, self.thrusters, strict=True)]
+        tables = [part for orders in self.thrusters for part in (orders.share, orders.thrust)]
+        law = np.concatenate([*matrices, past, forward, at_rest, pose, sizes, *traits, *tables])
+        head = {feedback.DISTURBED_INPUT: model.input_names.index(OUTSIDE_FORCES[0])}
+        return LoopLaw(keeper.station_keeper, {feedback.LAW: law}, head, n + 1)
+
 
 @dataclass(frozen=True, eq=False)
 class StationRun:
     """Distance north and east of the station [m], heading [rad], (n,) each; thrust ordered (n, thrusters).
 
-    given: share of the ordered force that is within the limits (n,); states: last of the model (nx,).
+    given: share of the ordered force that is within the limits (n,).
     """
 
     dt: float
@@ -197,7 +214,6 @@ class StationRun:
     heading: Array
     thrust: Array
     given: Array
-    states: Array
 
     @property
     def distance(self) -> Array:
@@ -208,6 +224,23 @@ class StationRun:
         """Return the run from a sample on."""
         rows = {name: getattr(self, name)[first:] for name in ("north", "east", "heading", "thrust", "given")}
         return replace(self, **rows)
+
+
+def _traits(model: Model, thruster: Thruster, orders: StationThruster) -> Array:
+    """Return what `station_keeper` reads of a thruster."""
+    traits, angle, command = np.zeros(keeper.TRAITS), thruster.angle, thruster.command
+    traits[: orders.inverse.size] = orders.inverse.ravel()
+    values = {
+        keeper.AZIMUTH: isinstance(angle, AngleInput),
+        keeper.COMMAND_INPUT: model.input_names.index(command.channel),
+        keeper.ANGLE_INPUT: model.input_names.index(angle.channel) if isinstance(angle, AngleInput) else -1,
+        keeper.ZERO: command.zero,
+        keeper.SPAN: command.span,
+        keeper.LEAST: orders.thrust[0],
+        keeper.MOST: orders.thrust[-1],
+    }
+    traits[list(values)] = list(values.values())
+    return traits
 
 
 def filter_coefficients(lag: Array, sample: float) -> tuple[Array, Array]:
@@ -223,63 +256,22 @@ def keep_station(
     Args:
         model: of `with_outside_forces`, without a current of its own.
         resting: inputs with all commands at rest, without the outside forces, (nu - 3,).
-        pushes: how far the water has gone north and east at each step [m]; X, Y, N from outside held over each step, in
-            the model's unit; (5, n).
+        pushes: how far the water has gone north and east at each step [m]; X, Y, N from outside, in the model's unit;
+            (5, n).
         seed: of the compass's noise.
 
     Raises:
         DivergedError: the craft runs away.
     """
-    dt, count = controller.dt, pushes.shape[1]
-    noise = sample_noise(controller.sampling, count, seed)
-    memory, series = _memory(model, controller, dt, np.concatenate([pushes, noise[None]]))
+    dt, sampling, count = controller.dt, controller.sampling, pushes.shape[1]
+    noise = sample_noise(sampling, -(-count // steps_a_sample(sampling, dt)), seed)
+    at_rest = np.array([(thruster.command.zero, 0.0) for thruster in layout_of(model).thrusters]).ravel()
+    law = controller.law(model).sampled(sampling, dt, noise, at_rest)
+    forces = np.stack([hold_equivalent(force) for force in pushes[2:]])
     inputs = np.concatenate([resting, np.zeros(len(OUTSIDE_FORCES))])
-    at_rest = np.zeros(len(model.states))
-    states, _ = commanded(model, keeper.station_keeper, memory, dt, count, at_rest, inputs, "a station")
-    rows = memory[series + keeper.DISTURBANCES * count :].reshape(-1, count)
-    place = model.states.index
-    return StationRun(
-        dt, states[:, place("x0")] + pushes[0], states[:, place("y0")] + pushes[1], states[:, place("psi")].copy(),
-        rows[2:-1:3].T.copy(), rows[-1].copy(), states[-1].copy(),
+    states, answers = law.run(
+        model, dt, np.concatenate([-pushes[:2], np.zeros((1, count)), forces]), np.zeros(len(model.states)), inputs,
+        "a station",
     )  # fmt: skip
-
-
-def _memory(model: Model, controller: StationController, dt: float, pushes: Array) -> tuple[Array, int]:
-    """Return the memory of `station_keeper` and where its series begin; pushes: what disturbs, (6, n)."""
-    n, count, size = len(controller.thrusters), pushes.shape[1], len(controller.thrusters[0].share)
-    sampling = controller.sampling
-    series = int(keeper.series_start(n, size))
-    memory = np.zeros(series + (keeper.DISTURBANCES + 3 * n + 1) * count)
-    values = {
-        keeper.THRUSTERS: n, keeper.COUNT: count, keeper.HOLD: round(sampling.sample_s / dt),
-        keeper.DELAY: round(sampling.dead_time / dt), keeper.SAMPLE: sampling.sample_s, keeper.TABLE: size,
-        keeper.PSI: model.states.index("psi"), keeper.NORTH: model.states.index("x0"),
-        keeper.EAST: model.states.index("y0"), keeper.FORCE_INPUT: model.input_names.index(OUTSIDE_FORCES[0]),
-        keeper.RESOLUTION: sampling.resolution,
-    }  # fmt: skip
-    memory[list(values)] = list(values.values())
-    past, forward = filter_coefficients(controller.lag, sampling.sample_s)
-    parts: tuple[tuple[int, Array], ...] = (
-        (keeper.KP, controller.KP), (keeper.KI, controller.KI), (keeper.KD, controller.KD), (keeper.PAST, past),
-        (keeper.FORWARD, forward), (series, pushes),
-    )  # fmt: skip
-    for start, part in parts:
-        memory[start : start + part.size] = part.ravel()
-    for i, orders in enumerate(controller.thrusters):
-        _write_thruster(memory, keeper.ROWS + i * keeper.TRAITS, orders, model)
-        start = keeper.tables_start(n) + 2 * i * size
-        memory[start : start + 2 * size] = np.concatenate([orders.share, orders.thrust])
-    return memory, series
-
-
-def _write_thruster(memory: Array, row: int, orders: ThrusterOrders, model: Model) -> None:
-    thruster, angle = orders.thruster, orders.thruster.angle
-    memory[row : row + 6] = orders.rows
-    turns = isinstance(angle, AngleInput)
-    traits = {
-        keeper.AZIMUTH: float(turns), keeper.COMMAND_INPUT: model.input_names.index(thruster.command.channel),
-        keeper.ZERO: thruster.command.zero, keeper.SPAN: thruster.command.span,
-        keeper.LEAST: orders.thrust[0], keeper.MOST: orders.thrust[-1],
-        keeper.ANGLE_INPUT: model.input_names.index(angle.channel) if isinstance(angle, AngleInput) else -1,
-    }  # fmt: skip
-    memory[row + np.array(list(traits), dtype=np.int64)] = list(traits.values())
+    north, east, heading = states[:, [model.states.index(name) for name in ("x0", "y0", "psi")]].T
+    return StationRun(dt, north + pushes[0], east + pushes[1], heading, answers[:-1].T, answers[-1])

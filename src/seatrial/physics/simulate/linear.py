@@ -1,7 +1,7 @@
 """Affine models by exact propagators: segments, frequency response, motion in a sum of harmonics."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -46,6 +46,7 @@ def discrete_matrices(
     return DiscreteMatrices(e, g0, g1, c, d, (de, dg0, dg1, dc, dd))
 
 
+@lru_cache
 def exact_step(model: Model, h: float) -> tuple[Array, Array, Array]:
     """Return e, g0 and g1 of an affine model over a step h [s] at its own parameters."""
     made, _ = _matrices_of_one(model, model.parameters.values, h, np.arange(len(model.states)), _NONE)

@@ -132,8 +132,8 @@ def state_limits(model: Model) -> Array:
 
 def first_row_outside(states: Array, limits: Array) -> int | None:
     """Return the first row of states (n, nx) in which one exceeds its limit (nx,) or is NaN; None where none is."""
-    inside = np.abs(states) <= limits
-    return None if inside.all() else int(np.argmin(inside.all(axis=1)))
+    largest = np.array([np.abs(column).max(initial=0.0) for column in states.T])
+    return None if np.all(largest <= limits) else int(np.argmin(np.all(np.abs(states) <= limits, axis=1)))
 
 
 def require_bounded(model: Model, time: Array, states: Array, subject: str) -> None:

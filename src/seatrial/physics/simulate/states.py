@@ -160,7 +160,7 @@ def _actuators_only(model: Model, names: tuple[str, ...]) -> Model:
 
 # The straight run before a manoeuvre: inputs that are held, the steady speed, the time to travel one's own length.
 
-_MAX_SPEED = 100.0  # m/s; guards against a wrong unit
+_SPEEDS = np.geomspace(1e-3, 1e2, 60)  # m/s; grid that brackets a speed, up to what guards against a wrong unit; chosen
 _SEARCHED = np.geomspace(1e-3, 1e3, 121)  # propulsion over speed, m/s or rps: twenty a decade; chosen
 
 
@@ -197,9 +197,8 @@ def approach_speed(model: Model, held: Array) -> float:
         model.compiled.rates(0.0, state, held, parameters, rates)
         return float(rates[place])
 
-    speeds = np.geomspace(1e-3, _MAX_SPEED, 60)  # m/s; grid that brackets the speed; chosen
-    states, inputs = np.tile(state, (len(speeds), 1)), np.tile(held, (len(speeds), 1))
-    states[:, place] = speeds
+    states, inputs = np.tile(state, (len(_SPEEDS), 1)), np.tile(held, (len(_SPEEDS), 1))
+    states[:, place] = _SPEEDS
     table = np.empty_like(states)
     evaluate(model.compiled.rates, states, inputs, parameters, 0.0, table)
     gains = table[:, place] > 0.0
@@ -209,7 +208,7 @@ def approach_speed(model: Model, held: Array) -> float:
             f"model '{model.name}' has no steady speed ahead with these inputs; state the approach speed in m/s: "
             "--speed on the command line, speed= in Python"
         )
-    return float(brentq(surge, *speeds[balanced[0] : balanced[0] + 2], xtol=1e-12))  # m/s of rounding; chosen
+    return float(brentq(surge, *_SPEEDS[balanced[0] : balanced[0] + 2], xtol=1e-12))  # m/s of rounding; chosen
 
 
 def balancing_input(model: Model, held: Array, name: str, speed: float) -> float:
