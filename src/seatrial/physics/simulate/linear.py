@@ -151,35 +151,50 @@ class LinearBatch(SegmentBatch):
 
     @cached_property
     def _recorded_inputs(self) -> list[tuple[Array, Array]]:
-        """Inputs as recorded at the fine step, for each segment."""
-        made = []
-        for segment, (samples, slopes) in enumerate(zip(self._samples, self._slopes, strict=True)):
-            place = np.arange((len(samples) - 1) * self._steps_per_sample + 1) / self._steps_per_sample
-            fine = np.ones((len(place), samples.shape[1] + 1))
-            fine[:, :-1] = spline_points(samples, slopes, place)[0]
-            for j in self._held_inputs:
-                fine[:, j] = self._delayed_input(segment, j, 0.0)[0]
-            made.append((fine, np.empty((len(place), len(self.corrections)))))
-        return made
+        """Inputs as recorded at the fine step, for each segment; equal segments, as of drawn runs, share theirs."""
+        lengths, fine = np.diff(self.offsets), dict[bytes, Array]()
+        samples = [np.ascontiguousarray(self.inputs[a:b]) for a, b in pairwise(self.offsets)]
+        keys = [one.tobytes() for one in samples]
+        for length in np.unique(lengths).tolist():
+            distinct = dict((k, one) for k, one in zip(keys, samples, strict=True) if len(one) == length)
+            fine.update(zip(distinct, self._fine_inputs(np.stack(list(distinct.values()), axis=1)), strict=True))
+        return [(fine[key], np.empty((len(fine[key]), len(self.corrections)))) for key in keys]
+
+    def _fine_inputs(self, samples: Array) -> Array:
+        """Return inputs of segments of one length, (samples, segments, nu), at the fine step with the constant 1.
+
+        Shape (segments, rows, nu + 1).
+        """
+        place = np.arange((len(samples) - 1) * self._steps_per_sample + 1) / self._steps_per_sample
+        fine = np.ones((samples.shape[1], len(place), samples.shape[2] + 1))
+        for j in range(samples.shape[2]):
+            columns = np.ascontiguousarray(samples[:, :, j])
+            if j in self._held_inputs:
+                values = self._held_mean(columns, place)[0]
+            else:
+                values = spline_points(columns, spline_slopes(columns), place)[0]
+            fine[:, :, j] = values.T
+        return fine
 
     def _delayed_input(self, segment: int, j: int, delay: float) -> tuple[Array, Array]:
         """Return input j at the fine step, late by `delay` [s], and its rate of change; clamped to the segment."""
         samples, slopes = (np.ascontiguousarray(a[segment][:, j : j + 1]) for a in (self._samples, self._slopes))
         place = np.arange((len(samples) - 1) * self._steps_per_sample + 1) / self._steps_per_sample - delay / self.dt
         if j in self._held_inputs:
-            return self._held_mean(samples[:, 0], place)
+            value, rise = self._held_mean(samples, place)
+            return value[:, 0], rise[:, 0]
         inside = (place >= 0.0) & (place <= len(samples) - 1.0)
         place = np.clip(place, 0.0, len(samples) - 1.0)
         value, rise = spline_points(samples, slopes, place)
         return value[:, 0], np.where(inside, rise[:, 0] / self.dt, 0.0)
 
     def _held_mean(self, samples: Array, place: Array) -> tuple[Array, Array]:
-        """Return the mean of a held input over each fine step, from `place` on [samples], and its rate of change."""
+        """Return means of held columns over each fine step, from `place` on [samples], and rates, (places, columns)."""
         steps, last = self._steps_per_sample, len(samples) - 1
         left = np.floor(place + _SAME_SAMPLE)
         after = (place - left) * steps + 1.0 - steps  # share of the step behind the next sample
-        switches = after > -steps * _SAME_SAMPLE
-        after = np.clip(after, 0.0, 1.0)
+        switches = (after > -steps * _SAME_SAMPLE)[:, None]
+        after = np.clip(after, 0.0, 1.0)[:, None]
         before, behind = (samples[np.clip(left + k, 0, last).astype(int)] for k in (0, 1))
         return before + after * (behind - before), np.where(switches, (behind - before) * steps / self.dt, 0.0)
 
