@@ -127,8 +127,8 @@ def integration_text(problem: OutputError) -> str:
 # promised decrease of the cost at which a search ends, ours
 _NEGLIGIBLE = 1e-8
 NEAR_ENOUGH = 0.02
-"""Decrease that a search may leave which gets no further: its point lies within 0.2 standard errors (root of twice
-that) of the minimum; chosen."""
+"""Decrease that a search may leave which gets no further, and promised one at which a round before the last ends with
+a Newton step: the point lies within 0.2 standard errors (root of twice that) of the minimum; chosen."""
 # rounds of noise estimates at most; each brings the noise some 40 % nearer where residuals are coloured, ours
 _ROUNDS = 25
 # of a search before noise levels are estimated anew, ours
@@ -242,7 +242,8 @@ def fit_output_error(
     """
     stated_noise = np.array([known_noise.get(o, np.nan) for o in problem.data.outputs])
     problem = replace(problem, noise=np.where(np.isfinite(stated_noise), stated_noise, problem.noise))
-    estimate = _search(problem, common_parameters, initial_states, min(_FEW_EVALUATIONS, evaluations), report_progress)
+    few = min(_FEW_EVALUATIONS, evaluations)
+    estimate = _search(problem, common_parameters, initial_states, few, report_progress, NEAR_ENOUGH)
     spent, settled = estimate.optimum.solution.evaluations, False
     if estimate.optimum.solution.status is Status.FAILED:
         return estimate
@@ -265,7 +266,8 @@ def fit_output_error(
             substeps=substeps,
         )
         settled = _is_settled(estimate.problem, again)
-        if settled or k == rounds - 1:
+        is_last = settled or k == rounds - 1
+        if is_last:
             substeps = sufficient_steps_of_optimum(estimate.problem, estimate.optimum, substeps)
             again = replace(again, substeps=substeps)
             settled = settled and substeps == estimate.problem.substeps
@@ -273,8 +275,9 @@ def fit_output_error(
             again,
             estimate.common_parameters,
             estimate.optimum.local,
-            evaluations if settled or k == rounds - 1 else _FEW_EVALUATIONS,
+            evaluations if is_last else _FEW_EVALUATIONS,
             report_progress,
+            _NEGLIGIBLE if is_last else NEAR_ENOUGH,
         )
         spent += estimate.optimum.solution.evaluations
         if settled:
@@ -357,6 +360,7 @@ def _search(
     initial_states: Array,
     evaluations: int,
     report_progress: ProgressReporter | None,
+    negligible: float = _NEGLIGIBLE,
 ) -> PointEstimate:
     def report(count: int, cost: float) -> None:
         if report_progress:
@@ -367,7 +371,7 @@ def _search(
         problem,
         common_parameters,
         initial_states,
-        negligible=_NEGLIGIBLE,
+        negligible=negligible,
         sufficient=NEAR_ENOUGH,
         evaluations=evaluations,
         report_progress=report,

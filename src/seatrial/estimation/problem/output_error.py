@@ -422,11 +422,11 @@ class OutputError:
             scaled = self._scaled_residuals(y, slice(base, base + len(y)))
             losses, weight = self._loss(scaled)
             root = np.sqrt(weight) * np.isfinite(self.data.measured[base : base + len(y)])
-            slopes, residuals = s * (root / self.noise)[:, :, None], root * scaled
+            scale, residuals = (root / self.noise)[:, :, None], root * scaled
             costs, gradients, hessians = [], [], []
             for k in range(*bounds):
                 rows = slice(self.data.offsets[k] - base, self.data.offsets[k + 1] - base)
-                jacobian = slopes[rows].reshape(-1, n + m)
+                jacobian = (s[rows] * scale[rows]).reshape(-1, n + m)  # of one segment: it stays in the cache
                 costs.append(np.sum(losses[rows]))
                 gradients.append(jacobian.T @ residuals[rows].ravel())
                 hessians.append(jacobian.T @ jacobian)
