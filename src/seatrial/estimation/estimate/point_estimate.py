@@ -266,11 +266,11 @@ def fit_output_error(
             substeps=substeps,
         )
         settled = _is_settled(estimate.problem, again)
-        is_last = settled or k == rounds - 1
-        if is_last:
+        if settled or k == rounds - 1:
             substeps = sufficient_steps_of_optimum(estimate.problem, estimate.optimum, substeps)
             again = replace(again, substeps=substeps)
             settled = settled and substeps == estimate.problem.substeps
+        is_last = settled or k == rounds - 1
         estimate = _search(
             again,
             estimate.common_parameters,
