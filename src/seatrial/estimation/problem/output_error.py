@@ -11,7 +11,6 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, Prior
 from seatrial.estimation.problem.population import SessionPopulation
 from seatrial.estimation.problem.segments import (
-    KnownSlopes,
     Segments,
     initial_state_weights,
     measured_initial_states,
@@ -271,15 +270,18 @@ class OutputError:
         """
         if self.data.measured.size * (self.size + len(self.starts)) > _MOST_KEPT:
             return self._differentiated(bounds, start, values, corrections, by_actuator)
-        point, last = (self._simulated_by, *(a.tobytes() for a in (start, values, corrections))), self.data.last_slopes
-        here = last[0] if last and last[0].point == point else KnownSlopes(point, {})
-        last[:] = [here]
-        if bounds not in here.slopes:
+
+        def made() -> tuple[Array, Array]:
             outputs, slopes = self._differentiated(bounds, start, values, corrections, by_actuator)
             outputs.setflags(write=False)
             slopes.setflags(write=False)
-            here.slopes[bounds] = outputs, slopes
-        return here.slopes[bounds]
+            return outputs, slopes
+
+        return self.data.last_slopes.part(self._point(start, values, corrections), bounds, made)
+
+    def _point(self, start: Array, values: Array, corrections: Array) -> tuple[Hashable, ...]:
+        """What decides outputs and slopes of the same data."""
+        return (self._simulated_by, *(a.tobytes() for a in (start, values, corrections)))
 
     @cached_property
     def _simulated_by(self) -> tuple[Hashable, ...]:
@@ -384,9 +386,12 @@ class OutputError:
     def simulated_outputs(self, shared: Array, local: Array) -> Array:
         """Return simulated outputs of all segments, shape (rows, ny); NaN after a divergence."""
         start, values, corrections = self.unpack(shared, local)
-        pieces = map_in_threads(lambda p: self._batch.simulate(*p, start, values, corrections)[0], self._work_ranges(),
-                        workers=self._threads)  # fmt: skip
-        return np.concatenate(pieces)
+        point, last = self._point(start, values, corrections), self.data.last_outputs
+
+        def piece(bounds: tuple[int, int]) -> Array:
+            return last.part(point, bounds, lambda: self._batch.simulate(*bounds, start, values, corrections)[0])
+
+        return np.concatenate(map_in_threads(piece, self._work_ranges(), workers=self._threads))
 
     def cost(self, shared: Array, local: Array) -> float:
         """Return half the (robust) sum of squares and the prior's; infinite if any segment diverges."""

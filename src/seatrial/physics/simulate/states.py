@@ -1,7 +1,7 @@
 """States of a model where a run begins: as measured, from its inputs alone, on the straight run of the approach."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -64,6 +64,7 @@ class ActuatorHistory:
         run, row: of each segment, its run and the row of its first sample, both (segments,).
         session: of each run, (runs,).
         substeps: Runge-Kutta steps in a sample.
+        last: what was worked out last, along all runs, and where, by the names of what it is differentiated by; None: states.
     """
 
     model: Model
@@ -74,6 +75,7 @@ class ActuatorHistory:
     row: Index
     session: Index
     substeps: int = 1
+    last: dict[tuple[str, ...] | None, tuple[tuple[Hashable, ...], Array]] = field(default_factory=dict, repr=False)
 
     @classmethod
     def from_runs(
@@ -108,19 +110,27 @@ class ActuatorHistory:
 
         parameters: of each session, all of the model's, (sessions, np); corrections: of each session, (sessions, n).
         """
-        batch = self._batch((), kinds)
-        values = np.ascontiguousarray(parameters[self.session])
-        rows, _ = batch.simulate(0, batch.segment_count, self._rest, values, corrections[self.session])
-        return rows[self.row]
+        return self._along_runs(None, parameters, corrections, kinds)[self.row]
 
     def slopes(
         self, names: tuple[str, ...], parameters: Array, corrections: Array, kinds: "tuple[InputCorrection, ...]"
     ) -> Array:
         """Return the derivatives of `starts` by the named parameters, then by corrections, (segments, states, n)."""
-        batch = self._batch(names, kinds)
-        values = np.ascontiguousarray(parameters[self.session])
-        _, slopes, _ = batch.differentiate(0, batch.segment_count, self._rest, values, corrections[self.session])
-        return slopes[self.row]
+        return self._along_runs(names, parameters, corrections, kinds)[self.row]
+
+    def _along_runs(
+        self, names: tuple[str, ...] | None, parameters: Array, corrections: Array, kinds: "tuple[InputCorrection, ...]"
+    ) -> Array:
+        """States along all runs, or where names are given their derivatives; at one point worked out once."""
+        values, own = np.ascontiguousarray(parameters[self.session]), corrections[self.session]
+        point = (self.substeps, kinds, values.tobytes(), own.tobytes())
+        known = self.last.get(names)
+        if known is None or known[0] != point:
+            batch = self._batch(names or (), kinds)
+            way = 0, batch.segment_count, self._rest, values, own
+            known = point, batch.simulate(*way)[0] if names is None else batch.differentiate(*way)[1]
+            self.last[names] = known
+        return known[1]
 
     @property
     def _rest(self) -> Array:
