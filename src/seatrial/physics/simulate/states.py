@@ -47,10 +47,9 @@ def settled_actuators(model: Model, inputs: Array) -> Array:
     state = np.zeros(len(model.states))
     names = actuator_states(model)
     if names:
-        steps = round(_SETTLING_S / _SETTLING_STEP_S)
-        states, _ = trajectory(model, np.tile(inputs, (steps + 1, 1)), _SETTLING_STEP_S, state)
-        places = [model.states.index(name) for name in names]
-        state[places] = states[-1, places]
+        steps, alone = round(_SETTLING_S / _SETTLING_STEP_S), _actuators_only(model, names)
+        states, _ = trajectory(alone, np.tile(inputs, (steps + 1, 1)), _SETTLING_STEP_S, np.zeros(len(names)))
+        state[[model.states.index(name) for name in alone.states]] = states[-1]
     return state
 
 
