@@ -442,9 +442,7 @@ def instrument_errors(
     return ErrorInformation(tuple(among), courses, score_test(estimate, candidates, slopes))
 
 
-def _with_noise_beside_errors(
-    estimate: PointEstimate, errors: Sequence[SensorError], test: ScoreTest
-) -> PointEstimate:
+def _with_noise_beside_errors(estimate: PointEstimate, errors: Sequence[SensorError], test: ScoreTest) -> PointEstimate:
     """The estimate with the noise that a short search leaves from whose records all errors are taken."""
     sizes = test.joint(np.diag([e.deviation**2 for e in errors]))[0]
     clean = reduce(lambda p, item: item[0].problem_with(p, item[1]), zip(errors, sizes, strict=True), estimate.problem)

@@ -270,8 +270,9 @@ def _output_error_normal(estimate: PointEstimate, at: OutputSlopes) -> NormalEqu
         cross = np.einsum("tyk,tyc->kc", at.by_unknowns[a:b], weighted[a:b])
         by_shared[own] += cross[: len(own)]
         by_local.append(cross[len(own) :])
+    gradient = np.einsum("tyc,ty->c", columns, problem.weighted_residuals(at.outputs))
     return _widened(
-        problem.normal(point, local), np.einsum("tyc,ty->c", columns, problem.weighted_residuals(at.outputs)), by_shared,
+        problem.normal(point, local), gradient, by_shared,
         np.einsum("tyk,tyc->kc", columns, weighted), np.array(by_local),
     )  # fmt: skip
 

@@ -168,7 +168,10 @@ def start_states(
     values = problem.unpack(nuisances.ravel(), local)[0]
 
     def alternatives() -> tuple[Array, Array]:
-        by_offsets, covariance = np.zeros((*values.shape, nuisances.shape[1])), np.zeros((*values.shape, values.shape[1]))
+        by_offsets, covariance = (
+            np.zeros((*values.shape, nuisances.shape[1])),
+            np.zeros((*values.shape, values.shape[1])),
+        )
         by_offsets[np.ix_(lasting, place)], covariance[np.ix_(lasting, place, place)] = _alternatives(part, estimated)
         return by_offsets, covariance
 

@@ -156,7 +156,7 @@ class LinearBatch(SegmentBatch):
         samples = [np.ascontiguousarray(self.inputs[a:b]) for a, b in pairwise(self.offsets)]
         keys = [one.tobytes() for one in samples]
         for length in np.unique(lengths).tolist():
-            distinct = dict((k, one) for k, one in zip(keys, samples, strict=True) if len(one) == length)
+            distinct = {k: one for k, one in zip(keys, samples, strict=True) if len(one) == length}
             fine.update(zip(distinct, self._fine_inputs(np.stack(list(distinct.values()), axis=1)), strict=True))
         return [(fine[key], np.empty((len(fine[key]), len(self.corrections)))) for key in keys]
 

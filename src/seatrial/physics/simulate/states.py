@@ -63,7 +63,8 @@ class ActuatorHistory:
         run, row: of each segment, its run and the row of its first sample, both (segments,).
         session: of each run, (runs,).
         substeps: Runge-Kutta steps in a sample.
-        last: what was worked out last, along all runs, and where, by the names of what it is differentiated by; None: states.
+        last: what was worked out last, along all runs, and where, by the names of what it is differentiated by;
+            None: states.
     """
 
     model: Model
