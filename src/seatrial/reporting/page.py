@@ -11,7 +11,6 @@ from seatrial.reporting import (
     key_facts,
     model_chapter,
     prediction_chapter,
-    published_chapter,
     records_chapter,
     runs,
 )
@@ -44,7 +43,8 @@ def _chapters(fit: Fit, citations: Citations) -> Iterator[tuple[str, Callable[[]
     """Yield the name of each chapter and what computes it."""
     length = fit.ship.particulars.get("L", 0.0)
     is_judged = _is_steered(fit) and not fit.model.has_thrusters
-    yield "published", lambda: published_chapter.published_section(fit)
+    if fit.reference is not None or not fit.method.gives_intervals:
+        yield "published", lambda: _published_section(fit)
     yield "prediction", lambda: prediction_chapter.prediction_section(fit)
     yield "coefficients", lambda: coefficients_chapter.coefficient_section(fit)
     yield "findings", lambda: finding_chapter.finding_section(fit.findings)
@@ -73,6 +73,12 @@ def _chapters(fit: Fit, citations: Citations) -> Iterator[tuple[str, Callable[[]
 
 
 # Chapters that few fits have: their modules are loaded for these alone.
+
+
+def _published_section(fit: Fit) -> Section:
+    from seatrial.reporting.published_chapter import published_section
+
+    return published_section(fit)
 
 
 def _thruster_section(fit: Fit) -> Section:

@@ -41,7 +41,6 @@ from seatrial.estimation.identify.instruments import (
     instrument_errors,
     with_undetected_sensor_errors,
 )
-from seatrial.estimation.identify.model_order import second_order_finding
 from seatrial.estimation.identify.model_selection import HOLDOUT_WINDOW_SHIP_LENGTHS, SelectedModel, with_model_spread
 from seatrial.estimation.identify.nonlinear_intervals import (
     default_profiles,
@@ -66,6 +65,7 @@ from seatrial.estimation.identify.warnings import (
     other_optima,
     refuted_prior_findings,
     response_findings,
+    second_order_finding,
     short_time_constant_findings,
     untrained_manoeuvre_findings,
 )

@@ -14,7 +14,7 @@ from seatrial.estimation.information.discrepancy import Discrepancy
 from seatrial.estimation.information.extrapolation import extrapolation
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.manoeuvres import bounded_interval, measures
-from seatrial.physics.simulate.linear import batch_class
+from seatrial.physics.simulate.batch import batch_class
 
 # Runs as they might have come out: coefficients, offsets and process noise drawn from what the training leaves open.
 

@@ -17,8 +17,7 @@ from seatrial.estimation.problem.segments import (
 )
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.numerics.workers import map_in_threads
-from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
-from seatrial.physics.simulate.linear import batch_class
+from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch, batch_class
 from seatrial.physics.simulate.states import ActuatorHistory
 
 # Output error over segments: simulate each from its own free initial state and compare with what was measured.

@@ -213,11 +213,6 @@ class LinearBatch(SegmentBatch):
         return [spline_slopes(samples) for samples in self._samples]
 
 
-def batch_class(model: Model) -> type[SegmentBatch]:
-    """Return the engine that suits the model."""
-    return LinearBatch if model.is_affine else SegmentBatch
-
-
 # Affine models under harmonic input: frequency response, and the exact motion in a sum of harmonics.
 
 Complex = NDArray[np.complex128]

@@ -10,7 +10,6 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.equations.model import RUDDER, ZERO_BY_DEFAULT
 from seatrial.core.values import NOTATION, Array, Index, InputError, Record, spelling_hint
-from seatrial.numerics.local_polynomials import smoothed_locally
 from seatrial.physics.sensors.measured_outputs import is_late
 from seatrial.physics.simulate.replay import inputs_of
 
@@ -291,6 +290,8 @@ _PERIOD_SHARE = 0.5  # of the period of most power: the longest window along whi
 
 def _slope(record: Record, symbol: str) -> Array:
     """Derivative by local cubic polynomials (Savitzky & Golay 1964) over 15 samples, fewer where the motion is fast."""
+    from seatrial.numerics.local_polynomials import smoothed_locally
+
     values = record[symbol]
     width = min(_smoothing_width(values), len(values) - 1 + len(values) % 2)
     if width == 1:
