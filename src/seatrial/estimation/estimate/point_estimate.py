@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from seatrial.core.equations import Model
 from seatrial.core.text.words import counted
 from seatrial.core.values import Array, Finding, InputError, ProgressReporter, Severity
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
@@ -154,6 +155,11 @@ class PointEstimate:
     def common_parameters(self) -> Array:
         """Shared unknowns at the optimum."""
         return self.optimum.solution.point
+
+    @property
+    def model(self) -> Model:
+        """The model at the optimum."""
+        return self.problem.model_at(self.common_parameters)
 
     @property
     def session_offsets(self) -> Array:

@@ -212,6 +212,10 @@ class OutputError:
         point[: len(self.free)] = [self.model.parameters[n].value for n in self.free]
         return point
 
+    def model_at(self, shared: Array) -> Model:
+        """Return the model with the free parameters of a point."""
+        return self.model.with_values(dict(zip(self.free, shared.tolist(), strict=False)))
+
     def columns_of(self, session: int) -> np.ndarray:
         """Return positions among the shared unknowns of a session's sensitivity columns."""
         return np.concatenate([np.arange(len(self.free)), self.offset_columns(session)])

@@ -165,15 +165,15 @@ class LinearBatch(SegmentBatch):
 
         Shape (segments, rows, nu + 1).
         """
-        place = np.arange((len(samples) - 1) * self._steps_per_sample + 1) / self._steps_per_sample
-        fine = np.ones((samples.shape[1], len(place), samples.shape[2] + 1))
+        rows = np.arange((len(samples) - 1) * self._steps_per_sample + 1)
+        fine = np.ones((samples.shape[1], len(rows), samples.shape[2] + 1))
         for j in range(samples.shape[2]):
             columns = np.ascontiguousarray(samples[:, :, j])
             if j in self._held_inputs:
-                values = self._held_mean(columns, place)[0]
+                fine[:, :, j] = columns.T[:, rows // self._steps_per_sample]
             else:
-                values = spline_points(columns, spline_slopes(columns), place)[0]
-            fine[:, :, j] = values.T
+                place = rows / self._steps_per_sample
+                fine[:, :, j] = spline_points(columns, spline_slopes(columns), place)[0].T
         return fine
 
     def _delayed_input(self, segment: int, j: int, delay: float) -> tuple[Array, Array]:
@@ -181,20 +181,19 @@ class LinearBatch(SegmentBatch):
         samples, slopes = (np.ascontiguousarray(a[segment][:, j : j + 1]) for a in (self._samples, self._slopes))
         place = np.arange((len(samples) - 1) * self._steps_per_sample + 1) / self._steps_per_sample - delay / self.dt
         if j in self._held_inputs:
-            value, rise = self._held_mean(samples, place)
-            return value[:, 0], rise[:, 0]
+            return self._held_mean(samples[:, 0], place)
         inside = (place >= 0.0) & (place <= len(samples) - 1.0)
         place = np.clip(place, 0.0, len(samples) - 1.0)
         value, rise = spline_points(samples, slopes, place)
         return value[:, 0], np.where(inside, rise[:, 0] / self.dt, 0.0)
 
     def _held_mean(self, samples: Array, place: Array) -> tuple[Array, Array]:
-        """Return means of held columns over each fine step, from `place` on [samples], and rates, (places, columns)."""
+        """Return the mean of a held input over each fine step, from `place` on [samples], and its rate of change."""
         steps, last = self._steps_per_sample, len(samples) - 1
         left = np.floor(place + _SAME_SAMPLE)
         after = (place - left) * steps + 1.0 - steps  # share of the step behind the next sample
-        switches = (after > -steps * _SAME_SAMPLE)[:, None]
-        after = np.clip(after, 0.0, 1.0)[:, None]
+        switches = after > -steps * _SAME_SAMPLE
+        after = np.clip(after, 0.0, 1.0)
         before, behind = (samples[np.clip(left + k, 0, last).astype(int)] for k in (0, 1))
         return before + after * (behind - before), np.where(switches, (behind - before) * steps / self.dt, 0.0)
 
