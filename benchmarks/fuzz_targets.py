@@ -194,7 +194,7 @@ def _simulated(data: bytes, place: Path) -> object:
 
 def _command(arguments: list[str]) -> str:
     """What a command prints, with the net for unexpected exceptions taken away."""
-    from seatrial.cli import app
+    from seatrial.cli.commands import app
 
     printed = io.StringIO()
     try:

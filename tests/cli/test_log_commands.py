@@ -8,7 +8,7 @@ from tests.data.draft.test_draft import BASE, TRUTH, write
 from tests.data.read.samples import SAMPLES
 from typer.testing import CliRunner
 
-from seatrial.cli import app
+from seatrial.cli.commands import app
 from seatrial.core.values import InputError
 
 RUNNER = CliRunner()

@@ -6,17 +6,7 @@ import os
 import sys
 from pathlib import Path
 
-# importing a module registers its commands, in the order of the help; everything heavy is imported inside them
-from seatrial.cli import (  # noqa: F401
-    campaign_commands,
-    doctor_command,
-    log_commands,
-    model_commands,
-    result_commands,
-    trial_commands,
-    workspace_command,
-)  # fmt: skip
-from seatrial.cli.application import app
+from seatrial.cli.commands import app
 
 INPUT_EXIT_CODE, INTERNAL_EXIT_CODE, INTERRUPT_EXIT_CODE = 2, 70, 130  # 70: EX_SOFTWARE of sysexits.h
 # new objects between two searches for unreachable cycles; chosen: more than the 215,000 modules, classes and functions

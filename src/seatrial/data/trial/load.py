@@ -1,7 +1,7 @@
 """A trial file into a `Trial`, and corrected by what the checks are certain of."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -43,7 +43,7 @@ from seatrial.data.trial.runs import (
     runs_of,
     stream_of,
 )
-from seatrial.data.trial.schema import NO_CHANNELS, RecordsTable, TrialFile
+from seatrial.data.trial.schema import NO_CHANNELS, ForcesTable, RecordsTable, TrialFile
 from seatrial.data.trial.trial import Role, Run, Trial
 from seatrial.physics.sensors.settings import TIMED_CHANNELS
 
@@ -190,7 +190,7 @@ def trial_of_tables(
         proposal = resolved_proposal(file.proposal, stream, home)
         if file.design is not None:
             refuse_unsuitable(file.design, model, ship.length)
-        forces, force_findings = _force_points(file, base, model, unit)
+        forces, force_findings = _force_points(file.forces, base, model, file.model.reference_point, unit)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     return Trial(
@@ -240,17 +240,17 @@ def load_runs(path: str | Path) -> tuple[Run, ...]:
 
 
 def _force_points(
-    file: TrialFile, base: Path, model: Model, unit: float | None
+    forces: Sequence[ForcesTable], base: Path, model: Model, reference_point: float, unit: float | None
 ) -> tuple[tuple[ForcePoints, ...], tuple[Finding, ...]]:
     """Return the tables of static forces and what is found of them; unit: reference force [kg/m^2]."""
-    if not file.forces:
+    if not forces:
         return (), ()
     from seatrial.data.check.captive_forces import force_findings
     from seatrial.data.trial.forces import read_force_points
 
     tables = tuple(
-        read_force_points(block, base, model, file.model.reference_point, f"forces[{i}]")
-        for i, block in enumerate(file.forces, start=1)
+        read_force_points(block, base, model, reference_point, f"forces[{i}]")
+        for i, block in enumerate(forces, start=1)
     )
     return tables, tuple(finding for points in tables for finding in force_findings(points, unit))
 

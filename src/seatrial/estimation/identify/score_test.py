@@ -259,18 +259,18 @@ class OutputSlopes:
         return cls(simulated, by_unknowns, _slopes_by_candidates(problem, candidates, moved))
 
 
-def _output_error_normal(estimate: PointEstimate, at: OutputSlopes) -> NormalEquations:
+def _output_error_normal(estimate: PointEstimate, slopes: OutputSlopes) -> NormalEquations:
     """The normal equations with the candidates behind the shared unknowns."""
     problem, point, local = estimate.problem, estimate.common_parameters, estimate.optimum.local
-    columns, count = at.by_candidates, at.by_candidates.shape[2]
+    columns, count = slopes.by_candidates, slopes.by_candidates.shape[2]
     weighted = columns * inverse_variances(problem)[:, :, None]
     by_shared, by_local = np.zeros((problem.size, count)), []
     for segment, (a, b) in enumerate(pairwise(problem.data.offsets)):
         own = problem.columns_of(int(problem.data.session[segment]))
-        cross = np.einsum("tyk,tyc->kc", at.by_unknowns[a:b], weighted[a:b])
+        cross = np.einsum("tyk,tyc->kc", slopes.by_unknowns[a:b], weighted[a:b])
         by_shared[own] += cross[: len(own)]
         by_local.append(cross[len(own) :])
-    gradient = np.einsum("tyc,ty->c", columns, problem.weighted_residuals(at.outputs))
+    gradient = np.einsum("tyc,ty->c", columns, problem.weighted_residuals(slopes.outputs))
     return _widened(
         problem.normal(point, local), gradient, by_shared,
         np.einsum("tyk,tyc->kc", columns, weighted), np.array(by_local),

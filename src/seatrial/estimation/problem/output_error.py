@@ -274,13 +274,13 @@ class OutputError:
         if self.data.measured.size * (self.size + len(self.starts)) > _MOST_KEPT:
             return self._differentiated(bounds, start, values, corrections, by_actuator)
 
-        def made() -> tuple[Array, Array]:
+        def differentiated() -> tuple[Array, Array]:
             outputs, slopes = self._differentiated(bounds, start, values, corrections, by_actuator)
             outputs.setflags(write=False)
             slopes.setflags(write=False)
             return outputs, slopes
 
-        return self.data.last_slopes.part(self._point(start, values, corrections), bounds, made)
+        return self.data.last_slopes.part(self._point(start, values, corrections), bounds, differentiated)
 
     def _point(self, start: Array, values: Array, corrections: Array) -> tuple[Hashable, ...]:
         """What decides outputs and slopes of the same data."""

@@ -218,14 +218,14 @@ class LastPoint(Generic[Part]):
     """What was worked out at the last point, by ranges of segments, first to last."""
 
     def __init__(self) -> None:
-        self._known: tuple[tuple[Hashable, ...], dict[tuple[int, int], Part]] = ((), {})
+        self._latest: tuple[tuple[Hashable, ...], dict[tuple[int, int], Part]] = ((), {})
 
     def part(self, point: tuple[Hashable, ...], bounds: tuple[int, int], make: Callable[[], Part]) -> Part:
         """Return a range's part at a point, made where it is not known; point: whatever decides it."""
-        known = self._known  # as one thread finds it: another one may be at another point
-        if known[0] != point:
-            known = self._known = point, {}
-        parts = known[1]
+        latest = self._latest  # as this thread finds it: another may be at another point
+        if latest[0] != point:
+            latest = self._latest = point, {}
+        parts = latest[1]
         if bounds not in parts:
             parts[bounds] = make()
         return parts[bounds]

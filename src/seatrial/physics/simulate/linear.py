@@ -154,9 +154,9 @@ class LinearBatch(SegmentBatch):
         """Inputs as recorded at the fine step, for each segment; equal segments, as of drawn runs, share theirs."""
         lengths, fine = np.diff(self.offsets), dict[bytes, Array]()
         samples = [np.ascontiguousarray(self.inputs[a:b]) for a, b in pairwise(self.offsets)]
-        keys = [one.tobytes() for one in samples]
+        keys = [segment.tobytes() for segment in samples]
         for length in np.unique(lengths).tolist():
-            distinct = {k: one for k, one in zip(keys, samples, strict=True) if len(one) == length}
+            distinct = {k: values for k, values in zip(keys, samples, strict=True) if len(values) == length}
             fine.update(zip(distinct, self._fine_inputs(np.stack(list(distinct.values()), axis=1)), strict=True))
         return [(fine[key], np.empty((len(fine[key]), len(self.corrections)))) for key in keys]
 

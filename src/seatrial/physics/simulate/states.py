@@ -121,15 +121,15 @@ class ActuatorHistory:
         self, names: tuple[str, ...] | None, parameters: Array, corrections: Array, kinds: "tuple[InputCorrection, ...]"
     ) -> Array:
         """States along all runs, or where names are given their derivatives; at one point worked out once."""
-        values, own = np.ascontiguousarray(parameters[self.session]), corrections[self.session]
-        point = (self.substeps, kinds, values.tobytes(), own.tobytes())
-        known = self.last.get(names)
-        if known is None or known[0] != point:
+        values, of_runs = np.ascontiguousarray(parameters[self.session]), corrections[self.session]
+        point = (self.substeps, kinds, values.tobytes(), of_runs.tobytes())
+        latest = self.last.get(names)
+        if latest is None or latest[0] != point:
             batch = self._batch(names or (), kinds)
-            way = 0, batch.segment_count, self._rest, values, own
-            known = point, batch.simulate(*way)[0] if names is None else batch.differentiate(*way)[1]
-            self.last[names] = known
-        return known[1]
+            way = 0, batch.segment_count, self._rest, values, of_runs
+            latest = point, batch.simulate(*way)[0] if names is None else batch.differentiate(*way)[1]
+            self.last[names] = latest
+        return latest[1]
 
     @property
     def _rest(self) -> Array:
