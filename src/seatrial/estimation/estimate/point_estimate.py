@@ -128,8 +128,11 @@ def integration_text(problem: OutputError) -> str:
 # promised decrease of the cost at which a search ends, ours
 _NEGLIGIBLE = 1e-8
 NEAR_ENOUGH = 0.02
-"""Decrease that a search may leave which gets no further, and promised one at which a round before the last ends with
-a Newton step: the point lies within 0.2 standard errors (root of twice that) of the minimum; chosen."""
+"""Decrease that a search may leave which gets no further: its point lies within 0.2 standard errors (root of twice
+that) of the minimum; chosen."""
+NEGLIGIBLE_IN_ROUND = 2e-4
+"""Promised decrease at which a short search, or a round before the last, ends with a Newton step: 0.02 standard errors;
+chosen. From farther off that step goes far along a direction that the records hardly determine."""
 # rounds of noise estimates at most; each brings the noise some 40 % nearer where residuals are coloured, ours
 _ROUNDS = 25
 # of a search before noise levels are estimated anew, ours
@@ -249,7 +252,7 @@ def fit_output_error(
     stated_noise = np.array([known_noise.get(o, np.nan) for o in problem.data.outputs])
     problem = replace(problem, noise=np.where(np.isfinite(stated_noise), stated_noise, problem.noise))
     few = min(_FEW_EVALUATIONS, evaluations)
-    estimate = _search(problem, common_parameters, initial_states, few, report_progress, NEAR_ENOUGH)
+    estimate = _search(problem, common_parameters, initial_states, few, report_progress, NEGLIGIBLE_IN_ROUND)
     spent, settled = estimate.optimum.solution.evaluations, False
     if estimate.optimum.solution.status is Status.FAILED:
         return estimate
@@ -283,7 +286,7 @@ def fit_output_error(
             estimate.optimum.local,
             evaluations if is_last else _FEW_EVALUATIONS,
             report_progress,
-            _NEGLIGIBLE if is_last else NEAR_ENOUGH,
+            _NEGLIGIBLE if is_last else NEGLIGIBLE_IN_ROUND,
         )
         spent += estimate.optimum.solution.evaluations
         if settled:

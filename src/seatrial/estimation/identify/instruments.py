@@ -16,7 +16,7 @@ from seatrial.core.values.arrays import early_turns
 from seatrial.estimation.estimate.assemble import UNIFORM, is_course_open
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import (
-    NEAR_ENOUGH,
+    NEGLIGIBLE_IN_ROUND,
     PointEstimate,
     effective_inflation,
     residual_correlation,
@@ -447,7 +447,7 @@ def _with_noise_beside_errors(estimate: PointEstimate, errors: Sequence[SensorEr
     sizes = test.joint(np.diag([e.deviation**2 for e in errors]))[0]
     clean = reduce(lambda p, item: item[0].problem_with(p, item[1]), zip(errors, sizes, strict=True), estimate.problem)
     optimum = levenberg_marquardt(
-        clean, estimate.common_parameters, estimate.optimum.local, negligible=NEAR_ENOUGH,
+        clean, estimate.common_parameters, estimate.optimum.local, negligible=NEGLIGIBLE_IN_ROUND,
         evaluations=_ERROR_EVALUATIONS,
     )  # fmt: skip
     residuals = PointEstimate(clean, optimum).residuals()
