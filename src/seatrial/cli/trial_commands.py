@@ -7,7 +7,6 @@ import typer
 
 from seatrial.cli.application import Json, OwnModelPath, Seed, TrialPath, app, own_model, result_document, write_json
 from seatrial.cli.finding_output import exit_if_errors, print_findings, write_correction
-from seatrial.cli.follow_output import journal_path, live_display, print_outcome, reports_as_lines, stop_on_signal
 from seatrial.cli.next_steps import after_check, after_fit
 from seatrial.cli.progress import progress_reporter
 from seatrial.cli.result_output import print_design, print_fit
@@ -158,6 +157,7 @@ def follow(
     On board, in the workspace in the browser and with a journal: --page 8000 --out results/today
     """
     from seatrial import api
+    from seatrial.cli.follow_output import journal_path, live_display, print_outcome, reports_as_lines, stop_on_signal
     from seatrial.core.values.files import writable_folder
     from seatrial.data.trial.runs import require_stream, with_source
 

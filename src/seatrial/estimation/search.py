@@ -17,8 +17,7 @@ from seatrial.numerics.optimise import (
     search,
 )
 from seatrial.numerics.workers import map_in_threads
-from seatrial.physics.simulate.batch import SegmentBatch
-from seatrial.physics.simulate.linear import batch_class
+from seatrial.physics.simulate.batch import SegmentBatch, batch_class
 from seatrial.physics.simulate.population import (
     Forcing,
     affine_population_matrices,

@@ -23,7 +23,7 @@ from seatrial.estimation.estimate.settings import characteristic_time
 from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.information.extrapolation import motion_envelope
 from seatrial.numerics.optimise import NormalEquations
-from seatrial.physics.simulate.linear import batch_class
+from seatrial.physics.simulate.batch import batch_class
 from seatrial.physics.simulate.replay import state_limits
 from seatrial.physics.simulate.steer import RUDDER_RATE, rudder_rate
 

@@ -25,7 +25,6 @@ from seatrial.reporting.measures import (
 )
 from seatrial.reporting.prediction_chapter import shortest_judged
 from seatrial.reporting.record_gaps import gap_facts
-from seatrial.reporting.seakeeping_chapter import share_of_critical
 from seatrial.reporting.section import FirstScreen, KeyFact
 from seatrial.reporting.time_figures import run_figure
 from seatrial.reporting.verdict import (
@@ -87,6 +86,8 @@ def _at_one_speed(fit: Fit) -> str:
 
 def _equivalent_damping(roll: RollCharacteristics) -> str:
     """What a swing of the largest recorded angle is damped by, and whether it is more than small ones."""
+    from seatrial.reporting.seakeeping_chapter import share_of_critical
+
     share, low, high = (
         100.0 * share_of_critical(b[-1], roll.period[-1])
         for b in (roll.damping, roll.damping_lower, roll.damping_upper)

@@ -15,7 +15,6 @@ from seatrial.core.text.numbers import duration, exact, percent
 from seatrial.core.text.words import counted, enumeration, sentence
 from seatrial.core.values import NOTATION, quantity
 from seatrial.core.values.notation import channel_letter, channel_meaning
-from seatrial.reporting.figures.search_charts import attempts_chart
 from seatrial.reporting.mathml import pieces
 from seatrial.reporting.section import Level, Picture, Section, fact_table
 
@@ -241,6 +240,12 @@ def sign_conventions(model: Model) -> str:
     return " ".join(sentences)
 
 
+def _attempts_figure(fit: Fit) -> str:
+    from seatrial.reporting.figures.search_charts import attempts_chart
+
+    return svg(attempts_chart(fit.search_attempts))
+
+
 def method_section(fit: Fit, citations: Citations) -> Section:
     """Return the chapter on how the estimate came about, with the references of the page."""
     search = (
@@ -262,7 +267,7 @@ def method_section(fit: Fit, citations: Citations) -> Section:
         "Elapsed": duration(fit.elapsed_s),
         "Versions": version_text(fit.versions),
     }
-    attempts = (Picture(lambda: svg(attempts_chart(fit.search_attempts)), _ATTEMPTS),) if fit.search_attempts else ()
+    attempts = (Picture(lambda: _attempts_figure(fit), _ATTEMPTS),) if fit.search_attempts else ()
     text = convergence_sentence(fit)
     return Section(
         "Method and provenance",

@@ -11,16 +11,12 @@ from seatrial.reporting import (
     key_facts,
     model_chapter,
     prediction_chapter,
-    published_chapter,
     records_chapter,
     runs,
-    seakeeping_chapter,
-    thruster_chapter,
 )
 from seatrial.reporting import measures as course
 from seatrial.reporting import model_chapter as summary
 from seatrial.reporting import prediction_chapter as ahead
-from seatrial.reporting import seakeeping_chapter as roll_chapter
 from seatrial.reporting import section as finding_chapter
 from seatrial.reporting.document import chapters_page
 from seatrial.reporting.model_chapter import Citations, with_mass_specific_units
@@ -47,13 +43,17 @@ def _chapters(fit: Fit, citations: Citations) -> Iterator[tuple[str, Callable[[]
     """Yield the name of each chapter and what computes it."""
     length = fit.ship.particulars.get("L", 0.0)
     is_judged = _is_steered(fit) and not fit.model.has_thrusters
-    yield "published", lambda: published_chapter.published_section(fit)
+    if fit.reference is not None or not fit.method.gives_intervals:
+        yield "published", lambda: _published_section(fit)
     yield "prediction", lambda: prediction_chapter.prediction_section(fit)
     yield "coefficients", lambda: coefficients_chapter.coefficient_section(fit)
     yield "findings", lambda: finding_chapter.finding_section(fit.findings)
-    yield "thrusters", lambda: thruster_chapter.thruster_section(fit.thruster_craft)
-    yield "rolling", lambda: roll_chapter.roll_section(fit.roll, fit.ship.scale)
-    yield "waves", lambda: seakeeping_chapter.seakeeping_section(fit.seakeeping, length)
+    if fit.thruster_craft is not None:
+        yield "thrusters", lambda: _thruster_section(fit)
+    if fit.roll is not None:
+        yield "rolling", lambda: _roll_section(fit)
+    if fit.seakeeping is not None:
+        yield "waves", lambda: _seakeeping_section(fit, length)
     yield "identifiability", lambda: identifiability_chapter.identifiability_section(fit)
     yield "course", lambda: course.course_section(fit)
     yield "models", lambda: identifiability_chapter.model_section(fit.candidate_models)
@@ -70,6 +70,33 @@ def _chapters(fit: Fit, citations: Citations) -> Iterator[tuple[str, Callable[[]
     yield "model", lambda: model_chapter.equation_section(fit.model, citations)
     yield "fixed", lambda: coefficients_chapter.assumed_section(fit, citations)
     yield "method", lambda: model_chapter.method_section(fit, citations)
+
+
+# Chapters that few fits have: their modules are loaded for these alone.
+
+
+def _published_section(fit: Fit) -> Section:
+    from seatrial.reporting.published_chapter import published_section
+
+    return published_section(fit)
+
+
+def _thruster_section(fit: Fit) -> Section:
+    from seatrial.reporting.thruster_chapter import thruster_section
+
+    return thruster_section(fit.thruster_craft)
+
+
+def _roll_section(fit: Fit) -> Section:
+    from seatrial.reporting.seakeeping_chapter import roll_section
+
+    return roll_section(fit.roll, fit.ship.scale)
+
+
+def _seakeeping_section(fit: Fit, length: float) -> Section:
+    from seatrial.reporting.seakeeping_chapter import seakeeping_section
+
+    return seakeeping_section(fit.seakeeping, length)
 
 
 def _is_steered(fit: Fit) -> bool:

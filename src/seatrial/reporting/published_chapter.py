@@ -66,7 +66,7 @@ def published_section(fit: Fit) -> Section:
 
 def _section_alone(fit: Fit) -> Section:
     """The chapter of a published method beside which nothing else was estimated."""
-    if not fit.coefficients or not fit.method.intervals.startswith("none: the method"):
+    if not fit.coefficients or fit.method.gives_intervals:
         return Section("")
     rows = [
         (c.name, exact(c.estimate, ESTIMATE_DIGITS), c.unit if c.unit != "1" else "")

@@ -11,7 +11,6 @@ from seatrial.core.text.numbers import significant
 from seatrial.core.values import Array, Record
 from seatrial.core.values.notation import channel_meaning, channel_unit, unit_text
 from seatrial.physics.manoeuvres import REACH_PERCENTILE, initial_speed, ordered_degrees, steered_orders, to_starboard
-from seatrial.physics.models.thrust_orders import work_shares
 from seatrial.physics.models.thruster_layout import ThrusterLayout, layout_of, steering_angles, with_steering_order
 from seatrial.reporting.section import KeyFact
 from seatrial.reporting.verdict import LEAST_RUDDER, extrapolation_limit
@@ -133,6 +132,8 @@ def _of_propulsion(name: str, runs: Sequence[Record], zigzag: str) -> Iterator[R
 
 def gaps_of_thrusters(runs: Sequence[Record], layout: ThrusterLayout) -> Iterator[RecordGap]:
     """Yield what runs do not show of a craft with thrusters: a side, larger angles, full command, orders astern."""
+    from seatrial.physics.models.thrust_orders import work_shares
+
     if steering_angles(layout):
         ordered = [with_steering_order(r, layout) for r in runs]
         yield from _of_angles([r for r in ordered if "delta" in r], _TURNED)

@@ -2,7 +2,7 @@
 
 from jinja2 import DictLoader, Environment
 
-from seatrial.core.pages.compiled_templates import CompiledTemplates
+from seatrial.core.pages.shell import CompiledTemplates
 from seatrial.numerics.kernels.cache import cache_folder
 
 

@@ -25,7 +25,6 @@ from seatrial.estimation.identify.model_selection import (
     with_model_spread,
 )
 from seatrial.estimation.identify.score_test import groups_of, holdout_scores
-from seatrial.estimation.predict.predict_runs import TiedModel
 from seatrial.physics.models.abkowitz import abkowitz
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.published import kvlcc2
@@ -212,9 +211,10 @@ def test_a_family_whose_members_all_fail_is_refused(found: Estimation, model: Mo
 
 
 def test_the_scatter_of_tied_models_is_added(found: Estimation) -> None:
-    away = found.model.with_values({"K": found.model.parameters["K"].value + 0.02})
-    widened = with_model_spread(found, [TiedModel(found.estimate, away)])
-    i = found.estimate.problem.free.index("K")
+    i, optimum = found.estimate.problem.free.index("K"), found.estimate.optimum
+    point = optimum.solution.point + 0.02 * np.eye(len(optimum.solution.point))[i]
+    away = replace(found.estimate, optimum=replace(optimum, solution=replace(optimum.solution, point=point)))
+    widened = with_model_spread(found, [away])
     added = widened.interval.covariance[i, i] - found.interval.covariance[i, i]
     assert added == pytest.approx(0.02**2)
     assert widened.interval.meaning.endswith("with the spread of 1 tied model")
@@ -227,7 +227,7 @@ def test_the_trials_own_model_stays_where_it_cannot_be_judged(found: Estimation,
     assert [(r.is_chosen, r.is_tied, r.note) for r in rows] == [(True, False, "it diverges"), (False, True, "")]
     runs = Runs.one_session_each(records, LENGTH)
     assert selected_estimation(found, members, rows, runs, SETTINGS, OPTIONS) is found
-    assert [t.estimate for t in tied_models(members, rows)] == [found.estimate]
+    assert tied_models(members, rows) == (found.estimate,)
 
 
 def test_a_structure_may_be_called_like_another_member(found: Estimation) -> None:

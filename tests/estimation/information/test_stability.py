@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatrial.estimation.information.stability import stability, straight_course_rates
+from seatrial.estimation.information.stability import growth_rate, stability, straight_course_rates
 from seatrial.physics.models.abkowitz import abkowitz
 from seatrial.physics.models.nomoto import nomoto
 from seatrial.physics.models.published import kvlcc2, kvlcc2_l7
@@ -32,6 +32,14 @@ def test_the_index_is_the_determinant_of_sway_and_yaw() -> None:
     assert found is not None
     assert found.index == pytest.approx(index_by_hand(values), rel=1e-9)
     assert found.lower == found.upper == found.index
+
+
+def test_the_growth_rate_is_the_largest_eigenvalue() -> None:
+    model, inputs = waterjet(), np.array([0.0, 1.866])
+    found = stability(model, np.zeros((11, 11)), np.inf, SPEED, inputs, 9.8)
+    assert found is not None
+    largest = np.linalg.eigvals(straight_course_rates(model, SPEED, inputs)).real.max()
+    assert found.growth_rate == growth_rate(model, SPEED, inputs) == largest
 
 
 def test_the_interval_is_that_of_drawn_ships(rng: np.random.Generator) -> None:

@@ -147,7 +147,7 @@ def test_windows_are_drawn_as_each_alone_would_be(model: Model, record: Record) 
 
 def test_a_draw_begins_as_its_offset_says() -> None:
     by_offsets = np.array([[[0.5], [0.0]], [[0.0], [-1.0]]])
-    starts = StartStates(np.array([[1.0, 2.0], [3.0, 4.0]]), by_offsets, np.zeros((2, 2, 2)))
+    starts = StartStates(np.array([[1.0, 2.0], [3.0, 4.0]]), lambda: (by_offsets, np.zeros((2, 2, 2))))
     offsets, rng = np.array([[[0.0], [2.0]], [[1.0], [3.0]]]), np.random.default_rng(1)
     np.testing.assert_array_equal(starts.draws(offsets, rng), [[[1.0, 2.0], [2.0, 2.0]], [[3.0, 3.0], [3.0, 1.0]]])
     again = StartStates.joined([starts[:1], starts[1:]])
@@ -156,7 +156,7 @@ def test_a_draw_begins_as_its_offset_says() -> None:
 
 def test_draws_begin_with_the_covariance_of_the_start() -> None:
     covariance = np.array([[[4.0, 1.0], [1.0, 0.5]], [[0.0, 0.0], [0.0, 1.0]]])
-    starts = StartStates(np.ones((2, 2)), np.zeros((2, 2, 1)), covariance)
+    starts = StartStates(np.ones((2, 2)), lambda: (np.zeros((2, 2, 1)), covariance))
     states = starts.draws(np.zeros((2, 40000, 1)), np.random.default_rng(2))
     for drawn_states, expected in zip(states, covariance, strict=True):
         np.testing.assert_allclose(np.cov(drawn_states.T), expected, atol=0.08)

@@ -10,6 +10,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Channel, InputError, Record
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import (
+    LastPoint,
     compared_outputs,
     cut_segments,
     initial_state_weights,
@@ -178,3 +179,24 @@ def test_a_thin_beginning_starts_with_the_fixes_of_the_run_and_a_prior(rng: np.r
     weights = initial_state_weights(data, ("u", "v", "x0", "y0"))
     assert np.all(weights[:, 0] > 0.0) and np.all(weights[:, 2] > 0.0)
     assert not initial_state_weights(cut_segments(model_named("waterjet"), [record], ("psi",), 2.0), ("u",)).any()
+
+
+def test_what_was_worked_out_at_the_last_point_is_worked_out_once() -> None:
+    last, asked = LastPoint[int](), list[str]()
+
+    def part(point: str, first: int) -> int:
+        return last.part((point,), (first, first + 1), lambda: asked.append(f"{point}{first}") or len(asked))
+
+    assert [part("a", 0), part("a", 1), part("a", 0), part("b", 0), part("b", 0), part("a", 0)] == [1, 2, 1, 3, 3, 4]
+    assert asked == ["a0", "a1", "b0", "a0"]
+
+
+def test_outputs_at_a_point_do_not_depend_on_what_was_simulated_before(model: Model) -> None:
+    data = cut_segments(model, [record("a", 41), record("b", 31)], ("psi", "r"), 5.0)
+    problem = OutputError(model, data, np.ones(2))
+    local, point = problem.measured_initial_states(), problem.start()
+    first, elsewhere = problem.simulated_outputs(point, local), problem.simulated_outputs(1.1 * point, local)
+    again = replace(problem, noise=2.0 * np.ones(2)).simulated_outputs(point, local)
+    np.testing.assert_array_equal(again, first)
+    assert not np.array_equal(elsewhere, first)
+    assert not np.array_equal(replace(problem, substeps=4).simulated_outputs(point, local), first)

@@ -1,5 +1,7 @@
 """Affine models by exact propagators and harmonics: against continuous truth, SciPy and differences."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -53,6 +55,17 @@ def test_continuous_waves_and_a_held_fin_equal_the_integrated_equations(rng: np.
         x = solve_ivp(rate, (k * dt, (k + 1) * dt - 1e-12), x, rtol=1e-9, atol=1e-12).y[:, -1]
     scale = np.abs(y).max(axis=0)
     np.testing.assert_allclose(y[-1] / scale, x / scale, atol=1e-4)
+
+
+def test_segments_of_all_lengths_have_the_inputs_that_each_has_alone(rng: np.random.Generator) -> None:
+    u, dt = inputs(0.1, 120, rng), 0.1
+    offsets = np.array([0, 30, 60, 120])
+    u[30:60] = u[:30]
+    together = LinearBatch(ship(), u, offsets, dt, STATES)
+    for segment, (first, behind) in enumerate(pairwise(offsets.tolist())):
+        alone = LinearBatch(ship(), u[first:behind], np.array([0, behind - first]), dt, STATES)
+        np.testing.assert_array_equal(together.fine_inputs(segment)[0], alone.fine_inputs(0)[0])
+    assert together.fine_inputs(0)[0] is together.fine_inputs(1)[0]
 
 
 @pytest.mark.parametrize("heading", QI2025_HEADINGS)

@@ -5,7 +5,6 @@ The page's script (`seatrial/reporting/templates/plots.js`) reads what `plot_doc
 import base64
 import math
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -46,9 +45,10 @@ def grid_values(time: Array, values: Array, points: int = POINTS) -> Array:
         return values
     edges = np.linspace(0, len(time), points // 2 + 1).astype(int)
     low, high = np.where(np.isnan(values), np.inf, values), np.where(np.isnan(values), -np.inf, values)
-    kept = [k for a, b in pairwise(edges)
-            for k in sorted((a + int(np.argmin(low[a:b])), a + int(np.argmax(high[a:b]))))]  # fmt: skip
-    return values[kept]
+    first, last = edges[:-1, None], edges[1:, None] - 1
+    places = np.minimum(first + np.arange(np.max(np.diff(edges))), last)  # of each stretch, the last one repeated
+    extremes = first + np.stack([low[places].argmin(axis=1), high[places].argmax(axis=1)], axis=1)
+    return values[np.sort(extremes, axis=1).ravel()]
 
 
 def packed(values: Array) -> dict[str, Any]:

@@ -6,13 +6,16 @@ The Content-Security-Policy names styles and scripts by their SHA-256 (W3C, Cont
 import base64
 import hashlib
 import re
+import sys
 from functools import cache
-from typing import TYPE_CHECKING
+from importlib.metadata import version
+from pathlib import Path
+
+from jinja2 import BytecodeCache, ChoiceLoader, Environment, PackageLoader, StrictUndefined
+from jinja2.bccache import Bucket
 
 from seatrial.core.figures.svg_text import night_rules
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
+from seatrial.numerics.kernels.cache import read_entry, source_digest, write_entry
 
 _COLOUR = re.compile(r'(?:fill|stroke)="(#[0-9a-f]{6}(?:[0-9a-f]{2})?)"')
 _STYLE, _SCRIPT = re.compile(r"<style>(.*?)</style>", re.DOTALL), re.compile(r"<script>(.*?)</script>", re.DOTALL)
@@ -20,13 +23,30 @@ _STYLE, _SCRIPT = re.compile(r"<style>(.*?)</style>", re.DOTALL), re.compile(r"<
 _POLICY, _NIGHT_RULES = "POLICY-OF-THIS-PAGE", "/* NIGHT-RULES */"
 
 
+class CompiledTemplates(BytecodeCache):
+    """Keeps templates compiled to Python, a third of the time that a report takes.
+
+    By their text, this package's code, and the versions of Jinja and Python.
+    """
+
+    def _name(self, bucket: Bucket) -> str:
+        facts = f"{bucket.key} {bucket.checksum} {version('jinja2')} {sys.version}".encode()
+        return f"template-{hashlib.sha256(facts + source_digest(Path(__file__).parent)).hexdigest()[:24]}.bin"
+
+    def load_bytecode(self, bucket: Bucket) -> None:
+        """Give the bucket its code, where it was compiled before."""
+        content = read_entry(self._name(bucket))
+        if content is not None:
+            bucket.bytecode_from_string(content)
+
+    def dump_bytecode(self, bucket: Bucket) -> None:
+        """Keep the code of the bucket."""
+        write_entry(self._name(bucket), bucket.bytecode_to_string())
+
+
 @cache
-def environment(package: str) -> "Environment":
+def environment(package: str) -> Environment:
     """Return the templates of a package and the shell's, with everything escaped by default."""
-    from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
-
-    from seatrial.core.pages.compiled_templates import CompiledTemplates
-
     return Environment(
         loader=ChoiceLoader([PackageLoader(package), PackageLoader("seatrial.core.pages")]),
         autoescape=True,

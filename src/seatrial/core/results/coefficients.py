@@ -197,6 +197,10 @@ class OffsetPopulation:
     slope_standard_error: Annotated[Number | None, Field(description="null as `slope`")] = None
 
 
+NO_INTERVALS = "none: the method gives none"
+"""What is said of the intervals of a published method."""
+
+
 @dataclass(frozen=True)
 class Method:
     """What was used and why, in sentences a report prints."""
@@ -209,6 +213,11 @@ class Method:
         default_factory=dict
     )
     name: Annotated[str, Field(description="as in `[estimate] method`")] = "auto"
+
+    @property
+    def gives_intervals(self) -> bool:
+        """Whether the coefficients have intervals."""
+        return not self.intervals.startswith(NO_INTERVALS)
 
 
 @dataclass(frozen=True)

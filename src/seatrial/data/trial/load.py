@@ -1,7 +1,7 @@
 """A trial file into a `Trial`, and corrected by what the checks are certain of."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +11,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import (
     NOTATION,
     Finding,
+    ForcePoints,
     InputError,
     Severity,
     Ship,
@@ -21,11 +22,9 @@ from seatrial.core.values import (
 )
 from seatrial.core.values.errors import listed
 from seatrial.core.values.files import parse_toml, read_table_text, refuse_absurd_numbers
-from seatrial.data.check.captive_forces import force_findings
 from seatrial.data.trial.amounts import schema_error
 from seatrial.data.trial.craft_tables import layout_text
 from seatrial.data.trial.design_request import refuse_unsuitable
-from seatrial.data.trial.forces import read_force_points
 from seatrial.data.trial.model_table import added_mass_findings, build_trial_model, ship_of
 from seatrial.data.trial.plausibility import (
     ground_velocity_findings,
@@ -44,7 +43,7 @@ from seatrial.data.trial.runs import (
     runs_of,
     stream_of,
 )
-from seatrial.data.trial.schema import NO_CHANNELS, RecordsTable, TrialFile
+from seatrial.data.trial.schema import NO_CHANNELS, ForcesTable, RecordsTable, TrialFile
 from seatrial.data.trial.trial import Role, Run, Trial
 from seatrial.physics.sensors.settings import TIMED_CHANNELS
 
@@ -191,10 +190,7 @@ def trial_of_tables(
         proposal = resolved_proposal(file.proposal, stream, home)
         if file.design is not None:
             refuse_unsuitable(file.design, model, ship.length)
-        forces = tuple(
-            read_force_points(block, base, model, file.model.reference_point, f"forces[{i}]")
-            for i, block in enumerate(file.forces, start=1)
-        )
+        forces, force_findings = _force_points(file.forces, base, model, file.model.reference_point, unit)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     return Trial(
@@ -221,7 +217,7 @@ def trial_of_tables(
             *added_mass_findings(model, ship),
             *hull_value_findings(ship),
             *ground_velocity_findings(model, file.sensors, file.records),
-            *(finding for points in forces for finding in force_findings(points, unit)),
+            *force_findings,
         ),
     )
 
@@ -241,6 +237,22 @@ def load_runs(path: str | Path) -> tuple[Run, ...]:
         return runs_of(file.records, file.data.folder, path.resolve().parent, length=None, declared=declared)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
+
+
+def _force_points(
+    forces: Sequence[ForcesTable], base: Path, model: Model, reference_point: float, unit: float | None
+) -> tuple[tuple[ForcePoints, ...], tuple[Finding, ...]]:
+    """Return the tables of static forces and what is found of them; unit: reference force [kg/m^2]."""
+    if not forces:
+        return (), ()
+    from seatrial.data.check.captive_forces import force_findings
+    from seatrial.data.trial.forces import read_force_points
+
+    tables = tuple(
+        read_force_points(block, base, model, reference_point, f"forces[{i}]")
+        for i, block in enumerate(forces, start=1)
+    )
+    return tables, tuple(finding for points in tables for finding in force_findings(points, unit))
 
 
 def _reference_force(model: Model, ship: Ship) -> float | None:

@@ -27,11 +27,9 @@ from seatrial.data.check.phases import (
     swing_text,
     swinging_channel,
 )
-from seatrial.data.check.water_speed import speed_through_water
 from seatrial.data.trial.trial import Role, Run, Trial, Trimming
 from seatrial.physics.models.thruster_layout import layout_of
 from seatrial.physics.sea.spectrum import WaveEncounter
-from seatrial.physics.sea.wave_forces import with_wave_forces
 from seatrial.physics.sensors.measured_outputs import with_timed_receiver
 from seatrial.physics.sensors.settings import Late, Sensors
 
@@ -321,6 +319,8 @@ def _one_course_findings(trial: Trial, records: tuple[TrialRecord, ...]) -> tupl
     """A warning where a current is estimated and positions on one course are all that shows a speed."""
     if not trial.estimate.current or not trial.model.has_speed or any("u" in r.record for r in records):
         return ()
+    from seatrial.data.check.water_speed import speed_through_water
+
     sessions = {r.session: [s.record for s in records if s.session == r.session] for r in records}
     by_session = {name: speed_through_water(runs) for name, runs in sessions.items()}
     lone = [name for name, water in by_session.items() if water is not None and not water.shows_current]
@@ -411,6 +411,8 @@ def _prepared(record: Record, run: Run, reference_point: float) -> Record:
     """A part of a run as the estimate takes it."""
     record = canonical_record(record, reference_point)
     if run.waves is not None and run.waves.spectrum is None:
+        from seatrial.physics.sea.wave_forces import with_wave_forces
+
         record = with_wave_forces(record, run.waves.excitation, run.waves.U, run.waves.beta)
     return apply_trimming(record, run.trimming)
 

@@ -8,8 +8,7 @@ import numpy as np
 from seatrial.core.results import Actuator, ManoeuvrePrecision, TimedOrder
 from seatrial.core.values import Array, Index, Record, RecordKind, frozen
 from seatrial.estimation.design.task import DesignTask, PriorShips, coefficient_magnitudes
-from seatrial.physics.simulate.batch import SegmentBatch
-from seatrial.physics.simulate.linear import batch_class
+from seatrial.physics.simulate.batch import SegmentBatch, batch_class
 from seatrial.physics.simulate.replay import record_of, replay
 
 # Orders: what the helmsman is to do every few seconds, and how the inputs respond.

@@ -233,9 +233,7 @@ class Estimation:
     @property
     def model(self) -> Model:
         """The model at the estimate."""
-        problem = self.estimate.problem
-        values = dict(zip(problem.free, self.estimate.common_parameters[: len(problem.free)], strict=True))
-        return problem.model.with_values(values)
+        return self.estimate.model
 
     def widened(self, added: Array, reason: str) -> "Estimation":
         """Return the estimation with more covariance of its coefficients; added: (k, k), of the first k unknowns."""

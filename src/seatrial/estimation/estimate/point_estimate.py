@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from seatrial.core.equations import Model
 from seatrial.core.text.words import counted
 from seatrial.core.values import Array, Finding, InputError, ProgressReporter, Severity
 from seatrial.estimation.estimate.settings import WHITE_INFLATION
@@ -129,6 +130,9 @@ _NEGLIGIBLE = 1e-8
 NEAR_ENOUGH = 0.02
 """Decrease that a search may leave which gets no further: its point lies within 0.2 standard errors (root of twice
 that) of the minimum; chosen."""
+NEGLIGIBLE_IN_ROUND = 2e-4
+"""Promised decrease at which a short search, or a round before the last, ends with a Newton step: 0.02 standard errors;
+chosen. From farther off that step goes far along a direction that the records hardly determine."""
 # rounds of noise estimates at most; each brings the noise some 40 % nearer where residuals are coloured, ours
 _ROUNDS = 25
 # of a search before noise levels are estimated anew, ours
@@ -154,6 +158,11 @@ class PointEstimate:
     def common_parameters(self) -> Array:
         """Shared unknowns at the optimum."""
         return self.optimum.solution.point
+
+    @property
+    def model(self) -> Model:
+        """The model at the optimum."""
+        return self.problem.model_at(self.common_parameters)
 
     @property
     def session_offsets(self) -> Array:
@@ -242,7 +251,8 @@ def fit_output_error(
     """
     stated_noise = np.array([known_noise.get(o, np.nan) for o in problem.data.outputs])
     problem = replace(problem, noise=np.where(np.isfinite(stated_noise), stated_noise, problem.noise))
-    estimate = _search(problem, common_parameters, initial_states, min(_FEW_EVALUATIONS, evaluations), report_progress)
+    few = min(_FEW_EVALUATIONS, evaluations)
+    estimate = _search(problem, common_parameters, initial_states, few, report_progress, NEGLIGIBLE_IN_ROUND)
     spent, settled = estimate.optimum.solution.evaluations, False
     if estimate.optimum.solution.status is Status.FAILED:
         return estimate
@@ -269,12 +279,14 @@ def fit_output_error(
             substeps = sufficient_steps_of_optimum(estimate.problem, estimate.optimum, substeps)
             again = replace(again, substeps=substeps)
             settled = settled and substeps == estimate.problem.substeps
+        is_last = settled or k == rounds - 1
         estimate = _search(
             again,
             estimate.common_parameters,
             estimate.optimum.local,
-            evaluations if settled or k == rounds - 1 else _FEW_EVALUATIONS,
+            evaluations if is_last else _FEW_EVALUATIONS,
             report_progress,
+            _NEGLIGIBLE if is_last else NEGLIGIBLE_IN_ROUND,
         )
         spent += estimate.optimum.solution.evaluations
         if settled:
@@ -357,6 +369,7 @@ def _search(
     initial_states: Array,
     evaluations: int,
     report_progress: ProgressReporter | None,
+    negligible: float = _NEGLIGIBLE,
 ) -> PointEstimate:
     def report(count: int, cost: float) -> None:
         if report_progress:
@@ -367,7 +380,7 @@ def _search(
         problem,
         common_parameters,
         initial_states,
-        negligible=_NEGLIGIBLE,
+        negligible=negligible,
         sufficient=NEAR_ENOUGH,
         evaluations=evaluations,
         report_progress=report,

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from seatrial.core.results import Fit, Identifiability, Posterior, Profile
+from seatrial.core.equations import Model
+from seatrial.core.results import Fit, Identifiability, Posterior, Profile, Seakeeping
 from seatrial.core.results.fields import MissingParts
 from seatrial.core.values import Finding
 from seatrial.core.values.versions import versions
@@ -40,7 +41,6 @@ from seatrial.estimation.identify.instruments import (
     instrument_errors,
     with_undetected_sensor_errors,
 )
-from seatrial.estimation.identify.model_order import second_order_finding
 from seatrial.estimation.identify.model_selection import HOLDOUT_WINDOW_SHIP_LENGTHS, SelectedModel, with_model_spread
 from seatrial.estimation.identify.nonlinear_intervals import (
     default_profiles,
@@ -65,10 +65,10 @@ from seatrial.estimation.identify.warnings import (
     other_optima,
     refuted_prior_findings,
     response_findings,
+    second_order_finding,
     short_time_constant_findings,
     untrained_manoeuvre_findings,
 )
-from seatrial.estimation.identify.waves import seakeeping
 from seatrial.estimation.information.frequency_response import frequency_responses
 from seatrial.estimation.predict.predict_runs import RunPredictions, predict_runs
 from seatrial.estimation.predict.session_offsets import horizon_list, k_step_errors
@@ -117,7 +117,7 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         "period, damping and metacentric height of roll",
         lambda: roll_characteristics(estimation.model, estimation.interval, free, runs.records, trial.ship), None,
     )  # fmt: skip
-    waves = parts.computed("the motions in waves", lambda: seakeeping(estimation.model, task.train, runs.length), None)
+    waves = parts.computed("the motions in waves", lambda: _seakeeping(task, estimation.model), None)
     craft = parts.computed(
         "speed, turn and stop of the craft",
         lambda: thruster_craft(
@@ -200,6 +200,15 @@ def assembled_fit(task: Identification, selected: SelectedModel, findings: Seque
         k_step_errors=k_steps,
         frequency_responses=responses,
     )  # fmt: skip
+
+
+def _seakeeping(task: Identification, model: Model) -> Seakeeping | None:
+    """What a linear model moves in the waves of the first run that knows them; None where none does."""
+    if not model.is_affine or all(run.waves is None for run in task.train):
+        return None
+    from seatrial.estimation.identify.waves import seakeeping
+
+    return seakeeping(model, task.train, task.runs.length)
 
 
 def _instrument_errors(task: Identification, estimation: Estimation) -> ErrorInformation | None:

@@ -27,7 +27,6 @@ from seatrial.estimation.identify.score_test import (
 from seatrial.estimation.information.covariance import excess_spread, inverse
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.hydro.excitation import BoxForceError, BoxHull
-from seatrial.physics.sea.wave_forces import with_wave_forces
 from seatrial.physics.simulate.replay import inputs_of
 
 # What estimated values of a trial file may be wrong by, and the coefficients and predictions that they move.
@@ -268,6 +267,8 @@ def _added_inputs(problem: OutputError, item: TrialRecord, way: BoxForceError) -
     nothing = np.zeros((len(record), len(problem.model.inputs)))
     if item.waves is None or "zeta" not in record:
         return nothing
+    from seatrial.physics.sea.wave_forces import with_wave_forces
+
     bare = replace(record, channels={n: c for n, c in record.channels.items() if n not in _FORCES})
     forced = with_wave_forces(bare, replace(way, box=item.waves.excitation), item.waves.U, item.waves.beta)
     first = round(float(forced.time[0] - record.time[0]) / record.dt)

@@ -36,10 +36,8 @@ from seatrial.physics.hydro.free_roll import (
 from seatrial.physics.manoeuvres import measures
 from seatrial.physics.models.candidate_structures import PHYSICAL_SIGNS
 from seatrial.physics.models.registry import family_of
-from seatrial.physics.models.thrust_orders import inertia_matrix, thrust_configuration
 from seatrial.physics.models.thruster_layout import AngleInput, Thruster, ThrusterLayout, layout_of
 from seatrial.physics.simulate.steer import RUDDER_RATE, rudder_rate
-from seatrial.physics.simulate.thrust import AHEAD, craft_manoeuvre, craft_programme
 
 # The identified roll model in the field's terms: inertia, stiffness, damping, and limits of physics.
 
@@ -397,6 +395,8 @@ def craft_measures(model: Model, basis: IntervalBasis, length: float) -> dict[st
 
     A programme through which it cannot be simulated, or not by its thrusters, has no measure.
     """
+    from seatrial.physics.simulate.thrust import AHEAD, craft_manoeuvre, craft_programme
+
     found: dict[str, CraftMeasure] = {}
     layout = layout_of(model)
     rate = rudder_rate(1.0, basis.training_envelope.get(RUDDER_RATE)).value
@@ -494,6 +494,8 @@ def _compass(model: Model, records: Sequence[Record], basis: IntervalBasis) -> C
 
 def _inertia(model: Model) -> FossenMatrix:
     """Mass and added mass (Fossen 2021, eqs. (6.14) and (6.40), surge, sway and yaw)."""
+    from seatrial.physics.models.thrust_orders import inertia_matrix
+
     units = tuple(tuple(_inertia_unit(i, j) for j in range(3)) for i in range(3))
     values = tuple(_floats(row) for row in inertia_matrix(model))
     return FossenMatrix("M", "mass and added mass", values, units)
@@ -524,6 +526,8 @@ def _damping_units(name: str) -> tuple[tuple[str, ...], ...]:
 
 def _configuration(model: Model, layout: ThrusterLayout) -> FossenMatrix:
     """B: rows of (cos a, sin a, x sin a - y cos a), the side force of the wash with them (Fossen 2021, section 9.2)."""
+    from seatrial.physics.models.thrust_orders import thrust_configuration
+
     angles = [0.0 if isinstance(t.angle, AngleInput) else t.angle for t in layout.thrusters]
     X, Y, N = thrust_configuration(model, layout.thrusters, angles)
     units = tuple(tuple(unit for _ in layout.thrusters) for unit in ("1", "1", "m"))

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,13 +29,9 @@ from seatrial.estimation.information.stability import growth_rate, stability
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.hydro.excitation import BoxHull
 from seatrial.physics.models.published import HEAVE_PITCH_COEFFICIENTS, HEAVE_PITCH_STIFFNESSES
-from seatrial.physics.simulate.thrust import (
-    DEFAULT_AHEAD,
-    StraightRun,
-    settled_yaw_rate,
-    straight_at_speed,
-    straight_by_thrusters,
-)
+
+if TYPE_CHECKING:
+    from seatrial.physics.simulate.thrust import StraightRun
 
 # What the stated stiffness of a box hull decides: its wave forces grow with it, and so does every coefficient.
 
@@ -112,23 +109,26 @@ _SPEED_STEP = 1e-3  # m/s, to which the speed is found from which on a craft is 
 
 def course_stability(
     model: Model, covariance: Array, degrees_of_freedom: float, approach: Mapping[str, float], length: float,
-    ahead: float = DEFAULT_AHEAD, fastest: float = math.inf,
+    ahead: float | None = None, fastest: float = math.inf,
 ) -> Stability | None:  # fmt: skip
     """Return the stability of the straight course; None without a yaw rate, or a speed ahead that counts.
 
     Args:
         covariance: of the free coefficients, (n, n).
         approach: steady speed u [m/s] and inputs of the trials, SI, notation signs; length: m.
-        ahead: of a craft with thrusters, share of full command at which it runs; its speed follows from that.
+        ahead: of a craft with thrusters, share of full command at which it runs, None: as programmes; its speed
+            follows from that.
         fastest: of a craft with thrusters, speed [m/s] up to which it is judged, too; without it at `ahead` only.
     """
 
-    def judged(run: StraightRun) -> Stability | None:
+    def judged(run: "StraightRun") -> Stability | None:
         return stability(model, covariance, degrees_of_freedom, run.speed, run.inputs, length)
 
     if model.has_thrusters:
+        from seatrial.physics.simulate.thrust import DEFAULT_AHEAD, straight_at_speed, straight_by_thrusters
+
         try:
-            run = straight_by_thrusters(model, ahead, approach)
+            run = straight_by_thrusters(model, DEFAULT_AHEAD if ahead is None else ahead, approach)
             top = straight_at_speed(model, fastest, approach) if math.isfinite(fastest) else run
             slow = top if top.speed < run.speed else run
             return _over_speeds(model, approach, judged(slow), judged(top))
@@ -151,6 +151,8 @@ def _over_speeds(
 ) -> Stability | None:
     """The stability at the faster of two speeds where the craft is unstable there, else at the slower."""
     from scipy.optimize import brentq
+
+    from seatrial.physics.simulate.thrust import straight_at_speed
 
     if slow is None or fast is None or slow.speed == fast.speed:
         return slow
@@ -197,6 +199,8 @@ def _turn_text(model: Model, approach: Mapping[str, float], speed: float | None)
     """The turn in which a craft with thrusters ends at equal orders; empty for others."""
     if not model.has_thrusters or speed is None:
         return ""
+    from seatrial.physics.simulate.thrust import settled_yaw_rate, straight_at_speed
+
     try:
         turn = abs(math.degrees(settled_yaw_rate(model, straight_at_speed(model, speed, approach))))
     except InputError:  # the simulation diverges

@@ -32,7 +32,6 @@ from seatrial.estimation.identify.identification import (
 from seatrial.estimation.identify.model_selection import selected_model
 from seatrial.estimation.identify.step_times import with_step_times
 from seatrial.estimation.identify.warnings import single_order_findings, with_unexcited_thrust_held
-from seatrial.estimation.identify.waves import contradicted_waves, identify_by_wave_spectrum, identify_in_unknown_waves
 from seatrial.estimation.information.frequency_response import frequency_range, frequency_range_finding
 from seatrial.estimation.predict.session_offsets import horizon_list
 
@@ -45,6 +44,8 @@ def identify_in_recorded_waves(task: Identification) -> Fit:
     Raises:
         InputError: the ship moves although no wave is recorded, or the records do not determine the coefficients.
     """
+    from seatrial.estimation.identify.waves import contradicted_waves
+
     try:
         refuse_unmeasured_waves(task.estimation, task.runs.records)
         selected = selected_model(task)
@@ -60,6 +61,21 @@ def identify_in_recorded_waves(task: Identification) -> Fit:
         return fit
     covered = frequency_range(task.runs.records, task.outputs)
     return replace(fit, findings=(*fit.findings, frequency_range_finding(covered))) if covered else fit
+
+
+# A ship in waves of which the spectrum is known, or nothing.
+
+
+def _identify_by_wave_spectrum(task: Identification) -> Fit:
+    from seatrial.estimation.identify.waves import identify_by_wave_spectrum
+
+    return identify_by_wave_spectrum(task)
+
+
+def _identify_in_unknown_waves(task: Identification) -> Fit:
+    from seatrial.estimation.identify.waves import identify_in_unknown_waves
+
+    return identify_in_unknown_waves(task)
 
 
 # A ship that rolls about its rest: out from a release, or by recorded inputs.
@@ -120,8 +136,8 @@ STRATEGIES: Mapping[Situation, Callable[[Identification], Fit]] = MappingProxyTy
     Situation.STEERED: identify_steered,
     Situation.STATIC_FORCES: identify_with_static_forces,
     Situation.RECORDED_WAVES: identify_in_recorded_waves,
-    Situation.WAVE_SPECTRUM: identify_by_wave_spectrum,
-    Situation.UNKNOWN_WAVES: identify_in_unknown_waves,
+    Situation.WAVE_SPECTRUM: _identify_by_wave_spectrum,
+    Situation.UNKNOWN_WAVES: _identify_in_unknown_waves,
     Situation.FREE_DECAY: identify_free_decay,
     Situation.DRIVEN_ROLL: identify_driven_roll,
 })  # fmt: skip

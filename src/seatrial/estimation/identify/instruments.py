@@ -16,13 +16,14 @@ from seatrial.core.values.arrays import early_turns
 from seatrial.estimation.estimate.assemble import UNIFORM, is_course_open
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.point_estimate import (
+    NEGLIGIBLE_IN_ROUND,
     PointEstimate,
     effective_inflation,
     residual_correlation,
     residual_spread,
 )
 from seatrial.estimation.estimate.process_noise import ProcessNoise, third_difference_noise
-from seatrial.estimation.identify.score_test import Candidate, ScoreTest, added_input, score_test
+from seatrial.estimation.identify.score_test import Candidate, OutputSlopes, ScoreTest, added_input, score_test
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.prediction_error import join_segments
 from seatrial.numerics.optimise import levenberg_marquardt
@@ -433,21 +434,22 @@ def instrument_errors(
     if not errors:
         return None
     candidates = [Candidate(e.name, e.problem_with, _ERROR_STEP * (e.deviation or 1.0)) for e in errors]
-    if isinstance(estimate, PointEstimate):
-        estimate = _with_noise_beside_errors(estimate, errors, candidates)
-    return ErrorInformation(tuple(among), courses, score_test(estimate, candidates))
-
-
-def _with_noise_beside_errors(
-    estimate: PointEstimate, errors: Sequence[SensorError], candidates: Sequence[Candidate]
-) -> PointEstimate:
-    """The estimate with the noise that a short search leaves from whose records all errors are taken."""
+    if not isinstance(estimate, PointEstimate):
+        return ErrorInformation(tuple(among), courses, score_test(estimate, candidates))
+    slopes = OutputSlopes.of_candidates(estimate, candidates)
     white = replace(estimate, problem=replace(estimate.problem, inflation=None))
-    sizes = score_test(white, candidates).joint(np.diag([e.deviation**2 for e in errors]))[0]
+    estimate = _with_noise_beside_errors(estimate, errors, score_test(white, candidates, slopes))
+    return ErrorInformation(tuple(among), courses, score_test(estimate, candidates, slopes))
+
+
+def _with_noise_beside_errors(estimate: PointEstimate, errors: Sequence[SensorError], test: ScoreTest) -> PointEstimate:
+    """The estimate with the noise that a short search leaves from whose records all errors are taken."""
+    sizes = test.joint(np.diag([e.deviation**2 for e in errors]))[0]
     clean = reduce(lambda p, item: item[0].problem_with(p, item[1]), zip(errors, sizes, strict=True), estimate.problem)
     optimum = levenberg_marquardt(
-        clean, estimate.common_parameters, estimate.optimum.local, evaluations=_ERROR_EVALUATIONS
-    )
+        clean, estimate.common_parameters, estimate.optimum.local, negligible=NEGLIGIBLE_IN_ROUND,
+        evaluations=_ERROR_EVALUATIONS,
+    )  # fmt: skip
     residuals = PointEstimate(clean, optimum).residuals()
     if not np.all(np.isfinite(np.nan_to_num(residuals))):
         return estimate

@@ -23,7 +23,6 @@ from seatrial.estimation.identify.score_test import holdout_scores
 from seatrial.estimation.identify.warnings import abandoned_criterion_finding
 from seatrial.estimation.information.whiteness import is_no_worse, standard_error
 from seatrial.estimation.predict.open_loop import rms_errors, simulate_open_loop
-from seatrial.estimation.predict.predict_runs import TiedModel
 from seatrial.estimation.predict.session_offsets import new_session_offsets
 from seatrial.numerics.workers import map_in_threads
 from seatrial.physics.models.candidate_structures import (
@@ -84,7 +83,7 @@ class SelectedModel:
 
     estimation: Estimation
     candidates: tuple[CandidateModel, ...]
-    tied: tuple[TiedModel, ...]
+    tied: tuple[PointEstimate, ...]
     findings: tuple[Finding, ...] = ()
 
 
@@ -366,17 +365,16 @@ def selected_estimation(
     return estimate_model(used.model, runs, settings, options, report_progress)
 
 
-def tied_models(fitted: Sequence[FittedVariant], candidates: Sequence[CandidateModel]) -> tuple[TiedModel, ...]:
-    """The tied members but the one that is used."""
-    tied = []
-    for f, row in zip(fitted, candidates, strict=True):
-        if row.is_tied and not row.is_chosen and f.estimate is not None:
-            values: Mapping[str, float] = dict(zip(f.estimate.problem.free, f.estimate.common_parameters, strict=False))
-            tied.append(TiedModel(f.estimate, f.model.with_values(values)))
-    return tuple(tied)
+def tied_models(fitted: Sequence[FittedVariant], candidates: Sequence[CandidateModel]) -> tuple[PointEstimate, ...]:
+    """The estimates of the tied members but the one that is used."""
+    return tuple(
+        f.estimate
+        for f, row in zip(fitted, candidates, strict=True)
+        if row.is_tied and not row.is_chosen and f.estimate is not None
+    )
 
 
-def with_model_spread(estimation: Estimation, tied: Sequence[TiedModel]) -> Estimation:
+def with_model_spread(estimation: Estimation, tied: Sequence[PointEstimate]) -> Estimation:
     """The fit with the scatter of tied models about it added to the covariance of its coefficients."""
     if not tied:
         return estimation

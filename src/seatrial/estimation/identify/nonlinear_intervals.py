@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,8 +20,10 @@ from seatrial.estimation.information.covariance import Interval, inverse
 from seatrial.estimation.problem.output_error import EliminatedStates, OutputError
 from seatrial.estimation.problem.prediction_error import PredictionError
 from seatrial.numerics.optimise import levenberg_marquardt
-from seatrial.numerics.sampling import Chains, ChainSettings, sample_chains
 from seatrial.numerics.workers import map_in_threads
+
+if TYPE_CHECKING:
+    from seatrial.numerics.sampling import Chains, ChainSettings
 
 # What records and priors leave open, by draws: credible intervals that follow bends a covariance takes for straight.
 
@@ -53,13 +56,15 @@ def sample_posterior(
     estimation: Estimation,
     seed: int,
     report_progress: ProgressReporter | None = None,
-    settings: ChainSettings | None = None,
+    settings: "ChainSettings | None" = None,
 ) -> tuple[Estimation, Posterior]:
     """Return the estimate with the covariance of draws from its posterior, and the draws.
 
     Raises:
         InputError: emcee is not installed.
     """
+    from seatrial.numerics.sampling import sample_chains
+
     target = _innovation_target(estimation) if estimation.has_process_noise else _output_error_target(estimation)
     moving = np.flatnonzero(target.upper > target.lower)
 
@@ -148,7 +153,7 @@ def _innovation_target(estimation: Estimation) -> _Target:
     )  # fmt: skip
 
 
-def _with_draws(estimation: Estimation, chains: Chains, common: Index) -> Estimation:
+def _with_draws(estimation: Estimation, chains: "Chains", common: Index) -> Estimation:
     draws = chains.points[:, :, common].reshape(-1, len(common))
     count, total = chains.points.shape[0], len(draws)
     meaning = f"posterior sampled by {count} chains, {total} draws"
@@ -156,7 +161,7 @@ def _with_draws(estimation: Estimation, chains: Chains, common: Index) -> Estima
     return replace(estimation, uncertainty=replace(estimation.uncertainty, interval=interval, information=None))
 
 
-def _posterior(estimation: Estimation, chains: Chains, common: Index, target: _Target) -> Posterior:
+def _posterior(estimation: Estimation, chains: "Chains", common: Index, target: _Target) -> Posterior:
     problem, other = estimation.estimate.problem, estimation.interval
     columns = common[: len(problem.free)]
     points = np.ascontiguousarray(chains.points[:, :, columns])

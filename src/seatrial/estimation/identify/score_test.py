@@ -173,8 +173,12 @@ def own_criterion(estimation: Estimation) -> PointEstimate | ProcessNoise:
     return noise if noise is not None and estimation.has_process_noise else estimation.estimate
 
 
-def score_test(estimate: PointEstimate | ProcessNoise, candidates: Sequence[Candidate]) -> ScoreTest:
+def score_test(
+    estimate: PointEstimate | ProcessNoise, candidates: Sequence[Candidate], slopes: "OutputSlopes | None" = None
+) -> ScoreTest:
     """Return what the records of an estimate say of each candidate.
+
+    slopes: of output error at this point, where they are known; tests with other noise share them.
 
     Raises:
         ArithmeticError: the simulation leaves what a computer can hold where a candidate is tried.
@@ -183,7 +187,7 @@ def score_test(estimate: PointEstimate | ProcessNoise, candidates: Sequence[Cand
     normal = (
         _innovation_normal(estimate, candidates)
         if isinstance(estimate, ProcessNoise)
-        else _output_error_normal(estimate, candidates)
+        else _output_error_normal(estimate, slopes or OutputSlopes.of_candidates(estimate, candidates))
     )
     (gradient, hessian), size = normal.without_local(), len(point)
     moving = np.flatnonzero((point > problem.lower) & (point < problem.upper))
@@ -230,24 +234,45 @@ def _slopes_by_candidates(
     return slopes
 
 
-def _output_error_normal(estimate: PointEstimate, candidates: Sequence[Candidate]) -> NormalEquations:
+@dataclass(frozen=True, eq=False)
+class OutputSlopes:
+    """Outputs at the point of an estimate, (rows, ny), and how they move; noise and its colour move none of it.
+
+    Attributes:
+        by_unknowns: as `OutputError.slopes`; by_candidates: (rows, ny, m).
+    """
+
+    outputs: Array
+    by_unknowns: Array
+    by_candidates: Array
+
+    @classmethod
+    def of_candidates(cls, estimate: PointEstimate, candidates: Sequence[Candidate]) -> "OutputSlopes":
+        """Return them at the optimum of an estimate, by candidates at none of them."""
+        problem, point, local = estimate.problem, estimate.common_parameters, estimate.optimum.local
+        simulated = problem.simulated_outputs(point, local)
+
+        def moved(other: OutputError) -> Array:
+            return other.simulated_outputs(point, local) - simulated - (other.data.measured - problem.data.measured)
+
+        by_unknowns = problem.slopes(point, local)
+        return cls(simulated, by_unknowns, _slopes_by_candidates(problem, candidates, moved))
+
+
+def _output_error_normal(estimate: PointEstimate, slopes: OutputSlopes) -> NormalEquations:
     """The normal equations with the candidates behind the shared unknowns."""
     problem, point, local = estimate.problem, estimate.common_parameters, estimate.optimum.local
-    simulated, slopes = problem.simulated_outputs(point, local), problem.slopes(point, local)
-
-    def moved(other: OutputError) -> Array:
-        return other.simulated_outputs(point, local) - simulated - (other.data.measured - problem.data.measured)
-
-    columns = _slopes_by_candidates(problem, candidates, moved)
+    columns, count = slopes.by_candidates, slopes.by_candidates.shape[2]
     weighted = columns * inverse_variances(problem)[:, :, None]
-    by_shared, by_local = np.zeros((problem.size, len(candidates))), []
+    by_shared, by_local = np.zeros((problem.size, count)), []
     for segment, (a, b) in enumerate(pairwise(problem.data.offsets)):
         own = problem.columns_of(int(problem.data.session[segment]))
-        cross = np.einsum("tyk,tyc->kc", slopes[a:b], weighted[a:b])
+        cross = np.einsum("tyk,tyc->kc", slopes.by_unknowns[a:b], weighted[a:b])
         by_shared[own] += cross[: len(own)]
         by_local.append(cross[len(own) :])
+    gradient = np.einsum("tyc,ty->c", columns, problem.weighted_residuals(slopes.outputs))
     return _widened(
-        problem.normal(point, local), np.einsum("tyc,ty->c", columns, problem.weighted_residuals(simulated)), by_shared,
+        problem.normal(point, local), gradient, by_shared,
         np.einsum("tyk,tyc->kc", columns, weighted), np.array(by_local),
     )  # fmt: skip
 

@@ -19,6 +19,7 @@ from seatrial.core.results import (
     Solution,
     Status,
 )
+from seatrial.core.results.coefficients import NO_INTERVALS
 from seatrial.core.results.fields import MissingParts
 from seatrial.core.text.numbers import significant
 from seatrial.core.values import (
@@ -210,9 +211,6 @@ def _linear_forcings(model: Model, records: Sequence[Record]) -> tuple[tuple[int
 
 
 # A published method: its values for the coefficients, compared with the package's own estimate.
-
-NO_INTERVALS = "none: the method gives none"
-"""What a result says of the intervals of a published method."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from seatrial.core.text.words import enumeration
 from seatrial.core.values import Array, Finding, InputError, Parameter, Record, Severity
 from seatrial.estimation.estimate.fit import Estimation
 from seatrial.estimation.estimate.intervals import RUNS_FOR_JACKKNIFE
-from seatrial.estimation.estimate.point_estimate import PointEstimate
+from seatrial.estimation.estimate.point_estimate import NEGLIGIBLE_IN_ROUND, PointEstimate
 from seatrial.estimation.estimate.process_noise import ProcessNoise
 from seatrial.estimation.identify.score_test import (
     Candidate,
@@ -289,7 +289,7 @@ def _freed(estimate: PointEstimate | ProcessNoise, name: str) -> tuple[OutputErr
     point = np.insert(estimate.optimum.solution.point, freed.free.index(name), wide.parameters[name].value)
     problem = replace(estimate.problem, runs=freed, steps=None) if is_filter else freed
     local = np.zeros((0, 0)) if is_filter else estimate.optimum.local  # a filter eliminates initial states
-    return freed, levenberg_marquardt(problem, point, local, evaluations=_EVALUATIONS)
+    return freed, levenberg_marquardt(problem, point, local, negligible=NEGLIGIBLE_IN_ROUND, evaluations=_EVALUATIONS)
 
 
 def _coefficient(parameter: Parameter, couplings: tuple[str, ...]) -> Candidate:

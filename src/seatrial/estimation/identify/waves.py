@@ -675,8 +675,7 @@ def _noise(fit: PointEstimate) -> float:
 
 def _comes_to_rest(fit: PointEstimate) -> bool:
     """Whether the free motion of a linear model dies out."""
-    problem = fit.problem
-    model = problem.model.with_values(dict(zip(problem.free, fit.common_parameters.tolist(), strict=False)))
+    model = fit.model
     nx, width = len(model.states), len(model.states) + len(model.inputs) + len(model.parameters)
     out, jacobian = np.empty((1, nx)), np.zeros((1, nx, width))
     at_rest = np.zeros((1, nx)), np.zeros((1, len(model.inputs))), model.parameters.values[None]

@@ -58,7 +58,7 @@ def lateral_states(model: Model) -> tuple[str, ...]:
 
 def growth_rate(model: Model, speed: float, inputs: Array) -> float:
     """Return the largest real part of the eigenvalues of sway and yaw on a straight course, 1/s; below 0: stable."""
-    return float(np.max(np.linalg.eigvals(straight_course_rates(model, speed, inputs)).real))
+    return _growth(straight_course_rates(model, speed, inputs))
 
 
 def stability(
@@ -76,16 +76,13 @@ def stability(
         return None
     unit, ahead = (1.0, 1.0) if speed is None else (length / speed, speed)
 
-    def index_of(one: Model) -> float:
-        return _index(straight_course_rates(one, ahead, inputs), unit)
-
-    def growth_of(one: Model) -> float:
-        return growth_rate(one, ahead, inputs)
+    def index_and_growth(one: Model) -> Array:
+        rates = straight_course_rates(one, ahead, inputs)
+        return np.array([_index(rates, unit), _growth(rates)])
 
     t = two_sided_quantile(STORED_LEVEL, degrees_of_freedom)
-    (index, wide), (growth, open_by) = (
-        (value_of(model), t * _deviation(model, value_of, covariance)) for value_of in (index_of, growth_of)
-    )
+    index, growth = index_and_growth(model).tolist()
+    wide, open_by = (t * _deviations(model, index_and_growth, covariance)).tolist()
     starboard, port = (_index(rates, unit) for rates in one_sided_rates(model, ahead, inputs))
     noun = "craft" if model.has_thrusters else "ship"
     is_known = abs(index) > wide or abs(growth) > open_by
@@ -101,14 +98,18 @@ def _index(rates: Array, unit: float) -> float:
     return float(np.linalg.det(-rates) * unit ** len(rates))
 
 
-def _deviation(model: Model, value_of: Callable[[Model], float], covariance: Array) -> float:
-    """Standard deviation of a value of the model, by central differences in its free coefficients."""
-    slope = list[float]()
+def _growth(rates: Array) -> float:
+    return float(np.max(np.linalg.eigvals(rates).real))
+
+
+def _deviations(model: Model, values_of: Callable[[Model], Array], covariance: Array) -> Array:
+    """Standard deviations of values of the model, (k,), by central differences in its free coefficients."""
+    slopes = list[Array]()
     for p in model.parameters.free:
         step = _STEP * p.characteristic_scale
-        up, down = (value_of(model.with_values({p.name: p.value + s})) for s in (step, -step))
-        slope.append((up - down) / (2.0 * step))
-    return float(np.sqrt(max(np.array(slope) @ covariance @ np.array(slope), 0.0)))
+        up, down = (values_of(model.with_values({p.name: p.value + s})) for s in (step, -step))
+        slopes.append((up - down) / (2.0 * step))
+    return np.sqrt([max(slope @ covariance @ slope, 0.0) for slope in np.ascontiguousarray(np.transpose(slopes))])
 
 
 def _stability_text(noun: str, speed: float | None, *, is_known: bool, is_stable: bool) -> str:

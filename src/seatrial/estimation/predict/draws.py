@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from seatrial.estimation.information.discrepancy import Discrepancy
 from seatrial.estimation.information.extrapolation import extrapolation
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.physics.manoeuvres import bounded_interval, measures
-from seatrial.physics.simulate.linear import batch_class
+from seatrial.physics.simulate.batch import batch_class
 
 # Runs as they might have come out: coefficients, offsets and process noise drawn from what the training leaves open.
 
@@ -46,32 +47,46 @@ class StartStates:
 
     Attributes:
         values: (w, nx), SI.
-        by_offsets: derivatives by a session's own unknowns, (w, nx, k): with another rudder zero the same first seconds
-            of a run are explained by another state.
-        covariance: (w, nx, nx), of the error that the sensors' noise leaves.
+        open: gives derivatives by a session's own unknowns, (w, nx, k), as with another rudder zero the same first
+            seconds of a run are explained by another state, and the covariance, (w, nx, nx), of the error that the
+            sensors' noise leaves; asked once, where runs are drawn.
     """
 
     values: Array
-    by_offsets: Array
-    covariance: Array
+    open: Callable[[], tuple[Array, Array]]
+
+    @property
+    def by_offsets(self) -> Array:
+        """Derivatives by a session's own unknowns."""
+        return self._alternatives[0]
+
+    @property
+    def covariance(self) -> Array:
+        """Of the error that the sensors' noise leaves."""
+        return self._alternatives[1]
+
+    @cached_property
+    def _alternatives(self) -> tuple[Array, Array]:
+        return self.open()
 
     @classmethod
     def given(cls, values: Array, kinds: int) -> "StartStates":
         """Return states that are known, whatever a session has of its own, of so many kinds."""
-        return cls(values, np.zeros((*values.shape, kinds)), np.zeros((*values.shape, values.shape[1])))
+        none = np.zeros((*values.shape, kinds)), np.zeros((*values.shape, values.shape[1]))
+        return cls(values, lambda: none)
 
     @classmethod
     def joined(cls, parts: Sequence["StartStates"]) -> "StartStates":
         """Return those of several simulations together."""
-        return cls(
-            np.concatenate([p.values for p in parts]),
-            np.concatenate([p.by_offsets for p in parts]),
-            np.concatenate([p.covariance for p in parts]),
-        )
+
+        def alternatives() -> tuple[Array, Array]:
+            return np.concatenate([p.by_offsets for p in parts]), np.concatenate([p.covariance for p in parts])
+
+        return cls(np.concatenate([p.values for p in parts]), alternatives)
 
     def __getitem__(self, indices: slice) -> "StartStates":
         """Return those of the chosen simulations."""
-        return StartStates(self.values[indices], self.by_offsets[indices], self.covariance[indices])
+        return StartStates(self.values[indices], lambda: (self.by_offsets[indices], self.covariance[indices]))
 
     def draws(self, offsets: Array, rng: np.random.Generator) -> Array:
         """Return states, (w, count, nx), where offsets differ from the expected ones by `offsets`, (w, count, k)."""

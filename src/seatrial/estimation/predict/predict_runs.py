@@ -58,14 +58,6 @@ _MOTION = frozenset({"u", "v", "r"})
 
 
 @dataclass(frozen=True, eq=False)
-class TiedModel:
-    """A model that the runs cannot distinguish from the best one: its estimate, and the model there."""
-
-    estimate: PointEstimate
-    model: Model
-
-
-@dataclass(frozen=True, eq=False)
 class IntervalCalibration:
     """What intervals of predictions are made of: what is foreseen, and what runs left out missed beyond it.
 
@@ -184,7 +176,7 @@ def predict_runs(
     length: float,
     seed: int = 0,
     report_progress: ProgressReporter | None = None,
-    tied: Sequence[TiedModel] = (),
+    tied: Sequence[PointEstimate] = (),
     windows: Sequence[WindowLength] = (),
     *,
     offsets_from_start: bool = False,
@@ -298,7 +290,7 @@ def _is_session_known(problem: OutputError, item: TrialRecord) -> bool:
 
 
 def _interval_basis(
-    estimation: Estimation, calibration: IntervalCalibration, covered: dict[str, float], tied: Sequence[TiedModel]
+    estimation: Estimation, calibration: IntervalCalibration, covered: dict[str, float], tied: Sequence[PointEstimate]
 ) -> IntervalBasis:
     problem, scatter = estimation.estimate.problem, calibration.uncertainty
     base = estimation.model.parameters
@@ -317,7 +309,7 @@ def _interval_basis(
 
 
 def tied_model_spread(
-    tied: Sequence[TiedModel], prediction: Prediction, seconds: float, length: float
+    tied: Sequence[PointEstimate], prediction: Prediction, seconds: float, length: float
 ) -> dict[str, float]:
     """Root-mean-square distance of tied models from a prediction: by measure, and of heading and position over the run.
 
@@ -325,10 +317,9 @@ def tied_model_spread(
     """
     away: dict[str, list[float]] = {}
     for one in tied:
-        problem = one.estimate.problem
         try:
-            own = new_session_offsets(one.estimate, prediction.measured).expected
-            run = simulate_open_loop(problem, one.model, prediction.measured, own, seconds).record
+            own = new_session_offsets(one, prediction.measured).expected
+            run = simulate_open_loop(one.problem, one.model, prediction.measured, own, seconds).record
         except InputError:
             continue
         compared = compare_measures(prediction.measured, run, length) if prediction.measures else {}

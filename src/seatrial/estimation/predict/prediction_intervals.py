@@ -211,7 +211,7 @@ def holdout_model(
 
     is_session_known: whether the session's other runs say what the run has of its own, else other sessions do.
     """
-    model = template.model.with_values(dict(zip(template.free, point, strict=False)))
+    model = template.model_at(point)
     if is_session_known:
         return HoldoutModel(model, point[template.offset_columns(template.data.sessions.index(session))])
     return HoldoutModel(model, offsets_without(template, point, session, record))

@@ -11,15 +11,13 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, Prior
 from seatrial.estimation.problem.population import SessionPopulation
 from seatrial.estimation.problem.segments import (
-    KnownSlopes,
     Segments,
     initial_state_weights,
     measured_initial_states,
 )
 from seatrial.numerics.optimise import NormalEquations
 from seatrial.numerics.workers import map_in_threads
-from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
-from seatrial.physics.simulate.linear import batch_class
+from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch, batch_class
 from seatrial.physics.simulate.states import ActuatorHistory
 
 # Output error over segments: simulate each from its own free initial state and compare with what was measured.
@@ -214,6 +212,10 @@ class OutputError:
         point[: len(self.free)] = [self.model.parameters[n].value for n in self.free]
         return point
 
+    def model_at(self, shared: Array) -> Model:
+        """Return the model with the free parameters of a point."""
+        return self.model.with_values(dict(zip(self.free, shared.tolist(), strict=False)))
+
     def columns_of(self, session: int) -> np.ndarray:
         """Return positions among the shared unknowns of a session's sensitivity columns."""
         return np.concatenate([np.arange(len(self.free)), self.offset_columns(session)])
@@ -271,15 +273,18 @@ class OutputError:
         """
         if self.data.measured.size * (self.size + len(self.starts)) > _MOST_KEPT:
             return self._differentiated(bounds, start, values, corrections, by_actuator)
-        point, last = (self._simulated_by, *(a.tobytes() for a in (start, values, corrections))), self.data.last_slopes
-        here = last[0] if last and last[0].point == point else KnownSlopes(point, {})
-        last[:] = [here]
-        if bounds not in here.slopes:
+
+        def differentiated() -> tuple[Array, Array]:
             outputs, slopes = self._differentiated(bounds, start, values, corrections, by_actuator)
             outputs.setflags(write=False)
             slopes.setflags(write=False)
-            here.slopes[bounds] = outputs, slopes
-        return here.slopes[bounds]
+            return outputs, slopes
+
+        return self.data.last_slopes.part(self._point(start, values, corrections), bounds, differentiated)
+
+    def _point(self, start: Array, values: Array, corrections: Array) -> tuple[Hashable, ...]:
+        """What decides outputs and slopes of the same data."""
+        return (self._simulated_by, *(a.tobytes() for a in (start, values, corrections)))
 
     @cached_property
     def _simulated_by(self) -> tuple[Hashable, ...]:
@@ -384,9 +389,12 @@ class OutputError:
     def simulated_outputs(self, shared: Array, local: Array) -> Array:
         """Return simulated outputs of all segments, shape (rows, ny); NaN after a divergence."""
         start, values, corrections = self.unpack(shared, local)
-        pieces = map_in_threads(lambda p: self._batch.simulate(*p, start, values, corrections)[0], self._work_ranges(),
-                        workers=self._threads)  # fmt: skip
-        return np.concatenate(pieces)
+        point, last = self._point(start, values, corrections), self.data.last_outputs
+
+        def piece(bounds: tuple[int, int]) -> Array:
+            return last.part(point, bounds, lambda: self._batch.simulate(*bounds, start, values, corrections)[0])
+
+        return np.concatenate(map_in_threads(piece, self._work_ranges(), workers=self._threads))
 
     def cost(self, shared: Array, local: Array) -> float:
         """Return half the (robust) sum of squares and the prior's; infinite if any segment diverges."""
@@ -422,11 +430,11 @@ class OutputError:
             scaled = self._scaled_residuals(y, slice(base, base + len(y)))
             losses, weight = self._loss(scaled)
             root = np.sqrt(weight) * np.isfinite(self.data.measured[base : base + len(y)])
-            slopes, residuals = s * (root / self.noise)[:, :, None], root * scaled
+            scale, residuals = (root / self.noise)[:, :, None], root * scaled
             costs, gradients, hessians = [], [], []
             for k in range(*bounds):
                 rows = slice(self.data.offsets[k] - base, self.data.offsets[k + 1] - base)
-                jacobian = slopes[rows].reshape(-1, n + m)
+                jacobian = (s[rows] * scale[rows]).reshape(-1, n + m)  # of one segment: it stays in the cache
                 costs.append(np.sum(losses[rows]))
                 gradients.append(jacobian.T @ residuals[rows].ravel())
                 hessians.append(jacobian.T @ jacobian)

@@ -1,10 +1,11 @@
 """Records cut into segments, the data of a problem as arrays, and the states with which segments begin."""
 
 import math
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from seatrial.physics.sensors.measured_outputs import is_late
 from seatrial.physics.simulate.batch import RunInputs
 from seatrial.physics.simulate.replay import inputs_of
 from seatrial.physics.simulate.states import ActuatorHistory
+
+Part = TypeVar("Part")
 
 # The states with which segments begin, as they were measured: where a search starts.
 
@@ -211,12 +214,21 @@ def start_velocity(north: Array, east: Array, psi: Array, dt: float) -> tuple[fl
 # Records cut into segments: the data of an output-error problem as arrays.
 
 
-@dataclass(frozen=True, eq=False)
-class KnownSlopes:
-    """What is known of a point: whatever decides it, and outputs with their derivatives by segments, first to last."""
+class LastPoint(Generic[Part]):
+    """What was worked out at the last point, by ranges of segments, first to last."""
 
-    point: tuple[Hashable, ...]
-    slopes: dict[tuple[int, int], tuple[Array, Array]]
+    def __init__(self) -> None:
+        self._latest: tuple[tuple[Hashable, ...], dict[tuple[int, int], Part]] = ((), {})
+
+    def part(self, point: tuple[Hashable, ...], bounds: tuple[int, int], make: Callable[[], Part]) -> Part:
+        """Return a range's part at a point, made where it is not known; point: whatever decides it."""
+        latest = self._latest  # as this thread finds it: another may be at another point
+        if latest[0] != point:
+            latest = self._latest = point, {}
+        parts = latest[1]
+        if bounds not in parts:
+            parts[bounds] = make()
+        return parts[bounds]
 
 
 @dataclass(frozen=True, eq=False)
@@ -246,9 +258,14 @@ class Segments:
     run_inputs: RunInputs | None = None
 
     @cached_property
-    def last_slopes(self) -> "list[KnownSlopes]":
-        """The slopes at the point at which they were last differentiated; empty before."""
-        return []
+    def last_outputs(self) -> LastPoint[Array]:
+        """The outputs where they were last simulated."""
+        return LastPoint()
+
+    @cached_property
+    def last_slopes(self) -> LastPoint[tuple[Array, Array]]:
+        """The outputs and their derivatives where they were last differentiated."""
+        return LastPoint()
 
     @cached_property
     def rounding_noise(self) -> Array:

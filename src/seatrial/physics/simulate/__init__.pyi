@@ -1,12 +1,12 @@
 """Names of this package, imported when first used."""
 
-from seatrial.physics.simulate.batch import SegmentBatch as SegmentBatch
+from seatrial.physics.simulate.batch import SegmentBatch as SegmentBatch, batch_class as batch_class
 from seatrial.physics.simulate.replay import inputs_of as inputs_of, record_of as record_of
 from seatrial.physics.simulate.replay import forces as forces
 from seatrial.physics.simulate.craft_control import HeadingStep as HeadingStep
 from seatrial.physics.simulate.linear import LinearSystem as LinearSystem, frequency_response as frequency_response
 from seatrial.physics.simulate.linear import harmonic_motion as harmonic_motion, linear_system as linear_system
-from seatrial.physics.simulate.linear import LinearBatch as LinearBatch, batch_class as batch_class
+from seatrial.physics.simulate.linear import LinearBatch as LinearBatch
 from seatrial.physics.simulate.population import Forcing as Forcing
 from seatrial.physics.simulate.population import affine_population_matrices as affine_population_matrices
 from seatrial.physics.simulate.population import discretised_hold as discretised_hold

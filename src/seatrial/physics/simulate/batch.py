@@ -239,3 +239,12 @@ class SegmentBatch:
 
 def _table(rows: Sequence[Sequence[int]], width: int) -> Index:
     return np.array(rows, dtype=np.int64).reshape(-1, width)
+
+
+def batch_class(model: Model) -> type[SegmentBatch]:
+    """Return the engine that suits the model: exact propagators where it is affine."""
+    if not model.is_affine:
+        return SegmentBatch
+    from seatrial.physics.simulate.linear import LinearBatch
+
+    return LinearBatch

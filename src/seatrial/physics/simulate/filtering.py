@@ -10,8 +10,7 @@ from seatrial.core.values import Array, Index
 from seatrial.numerics.kernels.integrate import correct
 from seatrial.numerics.kernels.kernel import TangentPointer
 from seatrial.physics.sensors.wave_motion import STILL, WaveMotion
-from seatrial.physics.simulate.batch import SegmentBatch
-from seatrial.physics.simulate.linear import batch_class
+from seatrial.physics.simulate.batch import SegmentBatch, batch_class
 
 HELD_SUBSTEPS = 4
 """Steps in a sample where inputs are held: at 1 rad a sample the filter then errs by 1e-4 of the motion; chosen."""

@@ -152,16 +152,30 @@ class LinearBatch(SegmentBatch):
 
     @cached_property
     def _recorded_inputs(self) -> list[tuple[Array, Array]]:
-        """Inputs as recorded at the fine step, for each segment."""
-        made = []
-        for segment, (samples, slopes) in enumerate(zip(self._samples, self._slopes, strict=True)):
-            place = np.arange((len(samples) - 1) * self._steps_per_sample + 1) / self._steps_per_sample
-            fine = np.ones((len(place), samples.shape[1] + 1))
-            fine[:, :-1] = spline_points(samples, slopes, place)[0]
-            for j in self._held_inputs:
-                fine[:, j] = self._delayed_input(segment, j, 0.0)[0]
-            made.append((fine, np.empty((len(place), len(self.corrections)))))
-        return made
+        """Inputs as recorded at the fine step, for each segment; equal segments, as of drawn runs, share theirs."""
+        lengths, fine = np.diff(self.offsets), dict[bytes, Array]()
+        samples = [np.ascontiguousarray(self.inputs[a:b]) for a, b in pairwise(self.offsets)]
+        keys = [segment.tobytes() for segment in samples]
+        for length in np.unique(lengths).tolist():
+            distinct = {k: values for k, values in zip(keys, samples, strict=True) if len(values) == length}
+            fine.update(zip(distinct, self._fine_inputs(np.stack(list(distinct.values()), axis=1)), strict=True))
+        return [(fine[key], np.empty((len(fine[key]), len(self.corrections)))) for key in keys]
+
+    def _fine_inputs(self, samples: Array) -> Array:
+        """Return inputs of segments of one length, (samples, segments, nu), at the fine step with the constant 1.
+
+        Shape (segments, rows, nu + 1).
+        """
+        rows = np.arange((len(samples) - 1) * self._steps_per_sample + 1)
+        fine = np.ones((samples.shape[1], len(rows), samples.shape[2] + 1))
+        for j in range(samples.shape[2]):
+            columns = np.ascontiguousarray(samples[:, :, j])
+            if j in self._held_inputs:
+                fine[:, :, j] = columns.T[:, rows // self._steps_per_sample]
+            else:
+                place = rows / self._steps_per_sample
+                fine[:, :, j] = spline_points(columns, spline_slopes(columns), place)[0].T
+        return fine
 
     def _delayed_input(self, segment: int, j: int, delay: float) -> tuple[Array, Array]:
         """Return input j at the fine step, late by `delay` [s], and its rate of change; clamped to the segment."""
@@ -197,11 +211,6 @@ class LinearBatch(SegmentBatch):
     def _slopes(self) -> list[Array]:
         """Slopes of the spline through the inputs of each segment, in units of the input a sample."""
         return [spline_slopes(samples) for samples in self._samples]
-
-
-def batch_class(model: Model) -> type[SegmentBatch]:
-    """Return the engine that suits the model."""
-    return LinearBatch if model.is_affine else SegmentBatch
 
 
 # Affine models under harmonic input: frequency response, and the exact motion in a sum of harmonics.

@@ -243,8 +243,7 @@ def trajectory(
     Raises:
         InputError: a parameter has no value, or `substeps` is less than one.
     """
-    from seatrial.physics.simulate.batch import error_over_range, sufficient_substeps
-    from seatrial.physics.simulate.linear import batch_class
+    from seatrial.physics.simulate.batch import batch_class, error_over_range, sufficient_substeps
 
     if model.parameters.missing:
         raise InputError(f"model '{model.name}' has no value for {', '.join(model.parameters.missing)}")

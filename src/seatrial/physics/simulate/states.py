@@ -1,7 +1,7 @@
 """States of a model where a run begins: as measured, from its inputs alone, on the straight run of the approach."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -10,7 +10,6 @@ import numpy as np
 from seatrial.core.equations import Model
 from seatrial.core.equations.model import RUDDER, ZERO_BY_DEFAULT
 from seatrial.core.values import NOTATION, Array, Index, InputError, Record, spelling_hint
-from seatrial.numerics.local_polynomials import smoothed_locally
 from seatrial.physics.sensors.measured_outputs import is_late
 from seatrial.physics.simulate.replay import inputs_of
 
@@ -47,10 +46,9 @@ def settled_actuators(model: Model, inputs: Array) -> Array:
     state = np.zeros(len(model.states))
     names = actuator_states(model)
     if names:
-        steps = round(_SETTLING_S / _SETTLING_STEP_S)
-        states, _ = trajectory(model, np.tile(inputs, (steps + 1, 1)), _SETTLING_STEP_S, state)
-        places = [model.states.index(name) for name in names]
-        state[places] = states[-1, places]
+        steps, alone = round(_SETTLING_S / _SETTLING_STEP_S), _actuators_only(model, names)
+        states, _ = trajectory(alone, np.tile(inputs, (steps + 1, 1)), _SETTLING_STEP_S, np.zeros(len(names)))
+        state[[model.states.index(name) for name in alone.states]] = states[-1]
     return state
 
 
@@ -64,6 +62,8 @@ class ActuatorHistory:
         run, row: of each segment, its run and the row of its first sample, both (segments,).
         session: of each run, (runs,).
         substeps: Runge-Kutta steps in a sample.
+        last: what was worked out last, along all runs, and where, by the names of what it is differentiated by;
+            None: states.
     """
 
     model: Model
@@ -74,6 +74,7 @@ class ActuatorHistory:
     row: Index
     session: Index
     substeps: int = 1
+    last: dict[tuple[str, ...] | None, tuple[tuple[Hashable, ...], Array]] = field(default_factory=dict, repr=False)
 
     @classmethod
     def from_runs(
@@ -108,19 +109,27 @@ class ActuatorHistory:
 
         parameters: of each session, all of the model's, (sessions, np); corrections: of each session, (sessions, n).
         """
-        batch = self._batch((), kinds)
-        values = np.ascontiguousarray(parameters[self.session])
-        rows, _ = batch.simulate(0, batch.segment_count, self._rest, values, corrections[self.session])
-        return rows[self.row]
+        return self._along_runs(None, parameters, corrections, kinds)[self.row]
 
     def slopes(
         self, names: tuple[str, ...], parameters: Array, corrections: Array, kinds: "tuple[InputCorrection, ...]"
     ) -> Array:
         """Return the derivatives of `starts` by the named parameters, then by corrections, (segments, states, n)."""
-        batch = self._batch(names, kinds)
-        values = np.ascontiguousarray(parameters[self.session])
-        _, slopes, _ = batch.differentiate(0, batch.segment_count, self._rest, values, corrections[self.session])
-        return slopes[self.row]
+        return self._along_runs(names, parameters, corrections, kinds)[self.row]
+
+    def _along_runs(
+        self, names: tuple[str, ...] | None, parameters: Array, corrections: Array, kinds: "tuple[InputCorrection, ...]"
+    ) -> Array:
+        """States along all runs, or where names are given their derivatives; at one point worked out once."""
+        values, of_runs = np.ascontiguousarray(parameters[self.session]), corrections[self.session]
+        point = (self.substeps, kinds, values.tobytes(), of_runs.tobytes())
+        latest = self.last.get(names)
+        if latest is None or latest[0] != point:
+            batch = self._batch(names or (), kinds)
+            way = 0, batch.segment_count, self._rest, values, of_runs
+            latest = point, batch.simulate(*way)[0] if names is None else batch.differentiate(*way)[1]
+            self.last[names] = latest
+        return latest[1]
 
     @property
     def _rest(self) -> Array:
@@ -280,6 +289,8 @@ _PERIOD_SHARE = 0.5  # of the period of most power: the longest window along whi
 
 def _slope(record: Record, symbol: str) -> Array:
     """Derivative by local cubic polynomials (Savitzky & Golay 1964) over 15 samples, fewer where the motion is fast."""
+    from seatrial.numerics.local_polynomials import smoothed_locally
+
     values = record[symbol]
     width = min(_smoothing_width(values), len(values) - 1 + len(values) % 2)
     if width == 1:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -20,9 +21,11 @@ from seatrial.physics.manoeuvres.programme import (
     release_angle,
     rudder_angles,
 )
-from seatrial.physics.manoeuvres.thrust_programme import ThrustProgramme
 from seatrial.physics.simulate.replay import commanded, record_of, require_bounded, trajectory
 from seatrial.physics.simulate.states import approach_speed, characteristic_time, held_inputs, settled_actuators
+
+if TYPE_CHECKING:
+    from seatrial.physics.manoeuvres.thrust_programme import ThrustProgramme
 
 # A ship that rolls, let go from an angle: the decay that a model foresees.
 
@@ -147,7 +150,7 @@ def _require_steerable(model: Model, dt: float, slew_rate: float) -> None:
 
 
 def steer_programme(
-    model: Model, programme: Programme | ThrustProgramme, memory: Array, finished_at: int, dt: float, start: Array,
+    model: Model, programme: "Programme | ThrustProgramme", memory: Array, finished_at: int, dt: float, start: Array,
     held: Array, longest: float,
 ) -> tuple[Array, Array, bool]:  # fmt: skip
     """Return inputs at the samples (n, nu), the model's signs, the last state (nx,), and whether it has finished.

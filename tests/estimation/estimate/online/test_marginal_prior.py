@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seatrial.estimation.estimate.online.carried_information import marginalise
+from seatrial.estimation.estimate.assemble import marginalise
 
 PLACES = np.array([0, 1])
 

@@ -15,8 +15,8 @@ from seatrial.estimation.problem.output_error import Nuisance, OutputError
 from seatrial.estimation.problem.segments import Segments
 from seatrial.numerics.optimise import Optimum, levenberg_marquardt
 from seatrial.physics.models.roll import roll
-from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
-from seatrial.physics.simulate.linear import LinearBatch, batch_class
+from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch, batch_class
+from seatrial.physics.simulate.linear import LinearBatch
 from seatrial_studies.seaway import fin_commands, ship
 
 Array = np.ndarray

@@ -17,7 +17,7 @@ from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.information.whiteness import whiteness_p
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.optimise import NormalEquations, levenberg_marquardt
-from seatrial.physics.simulate.linear import batch_class
+from seatrial.physics.simulate.batch import batch_class
 
 # Rows of a run that grows.
 

@@ -15,9 +15,8 @@ from seatrial.data.check.conventions import canonical_record
 from seatrial.data.read.assemble import record_from_values
 from seatrial.data.trial import FitCriterion, Trial, with_input_corners
 from seatrial.data.trial.settings import Stream
-from seatrial.estimation.estimate.assemble import Runs
+from seatrial.estimation.estimate.assemble import MarginalPrior, Runs, marginalise
 from seatrial.estimation.estimate.fit import estimate_model, with_segment_seconds
-from seatrial.estimation.estimate.online.carried_information import MarginalPrior, marginalise
 from seatrial.estimation.estimate.online.change_detector import GaussianEstimate
 from seatrial.estimation.estimate.online.recursive import Forgetting
 from seatrial.estimation.estimate.online.window import (
