@@ -48,6 +48,8 @@ def unwrapped(angle: Array) -> Array:
 
 # Angles that were averaged or interpolated as numbers where they jump by a whole turn: they run the wrong way round.
 
+# of a turn, by which readings may lie beyond the range: rounding to whole degrees
+_ROUNDED = 0.5 / 360.0
 # of a turn, from either end of the range: between them an angle runs the wrong way; chosen
 _END_SHARE = 1.0 / 6.0
 # quantile of the steps of an angle that its craft makes, and times it that it then runs at least; chosen
@@ -55,8 +57,9 @@ _USUAL_QUANTILE, _TOO_FAST = 0.99, 5.0
 
 
 def smeared_wraps(angle: Array) -> list[tuple[int, int]]:
-    """Return first row and row after the last of each time an angle [rad], within one turn, runs the wrong way round.
+    """Return first row and row after the last of each time an angle [rad] runs the wrong way round.
 
+    Of an angle within 0 to 2 pi or -pi to pi; one that was unwrapped runs as its craft does.
     It then goes from one end of its range to the other through all that lies between, much faster than it ever does:
     359, 216, 130, 79, ... in place of 359, 1. What it needs to come to rest is part of it.
     """
@@ -65,6 +68,8 @@ def smeared_wraps(angle: Array) -> list[tuple[int, int]]:
     if values.size < 2 or float(np.ptp(values)) > math.tau:
         return []
     place = (values - (0.0 if values.min() >= 0.0 else -math.pi)) / math.tau
+    if place.min() < -_ROUNDED or place.max() > 1.0 + _ROUNDED:  # it was unwrapped
+        return []
     ends = np.flatnonzero((place < _END_SHARE) | (place > 1.0 - _END_SHARE))
     first, last = ends[:-1], ends[1:]
     is_across = (last - first > 1) & ((place[first] < 0.5) != (place[last] < 0.5))

@@ -17,6 +17,7 @@ Signal = NDArray[Any]
 """What a reading shows on a grid, (n,): real, or in the plane as north + i east or ahead + i aside."""
 BINS = 240
 """Bins of a grid; chosen: a manoeuvre has some ten of them, and all readings are compared within a second."""
+_LEAST_BINS = 24  # of a grid; chosen: what relations need, of runs of few samples too
 _LIVELY_SHARE = 12  # of a run, one part of so many, on the fine grid; chosen
 _TURNS = (360.0, math.tau, 36000.0, 3600.0)  # full turns as numbers: deg, rad, 1/100 and 1/10 deg
 # share of a turn that a step must jump to be a wrap, and of the steps that may; chosen
@@ -60,6 +61,11 @@ class Samples:
         """The readings without jumps by a full turn, about the level at which they began."""
         cells = self.readings[1]
         return np.unwrap(cells, period=self.turn) if self.turn else cells
+
+    @cached_property
+    def interval(self) -> float:
+        """The usual time from reading to reading [s]."""
+        return float(np.median(np.diff(self.readings[0])))
 
     @cached_property
     def means(self) -> dict["Grid", Array]:
@@ -114,13 +120,21 @@ def grids(columns: Sequence[Samples]) -> tuple[Grid, ...]:
     spans = [entry.readings[0][[0, -1]] for entry in columns if entry.readings[0].size > 2]
     if not spans or (stop := max(s[1] for s in spans)) <= (start := min(s[0] for s in spans)):
         return ()
-    overall = Grid(np.linspace(start, stop, BINS + 1))
-    moves = np.zeros(BINS)
+    finest = min(entry.interval for entry in columns if entry.readings[0].size > 2)
+    overall = _grid(start, stop, finest)
+    count = len(overall.edges) - 1
+    moves = np.zeros(count)
     for entry in columns:
         means = np.nan_to_num(overall.means(entry))
         size = float(np.std(means))
         moves[1:] += np.abs(np.diff(means)) / size if size > 0.0 else 0.0
-    width = BINS // _LIVELY_SHARE
+    width = max(count // _LIVELY_SHARE, 1)
     activity = np.convolve(moves, np.ones(width), "valid")
     first = int(np.argmax(activity))
-    return overall, Grid(np.linspace(overall.edges[first], overall.edges[first + width], BINS + 1))
+    return overall, _grid(overall.edges[first], overall.edges[first + width], finest)
+
+
+def _grid(start: float, stop: float, finest: float) -> Grid:
+    """Even bins of a span, none narrower than the finest samples: there the numbers hold no noise of their own."""
+    bins = math.floor((stop - start) / finest) if finest > 0.0 else BINS
+    return Grid(np.linspace(start, stop, min(max(bins, _LEAST_BINS), BINS) + 1))

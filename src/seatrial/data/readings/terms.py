@@ -25,6 +25,9 @@ _COURSE_SD, _COURSE_SHARE, _COURSE_NUMBERS = math.radians(10.0), 0.9, 14.0
 _SLOW = 0.3  # of the fastest speed, below which a craft has no course; chosen
 _TURNING_CAP, _WAVES, _WAVES_SURE = 12.0, 6.0, 0.5  # nats, nats, share in phase from which a sign is sure; chosen
 _LONG_WAVES = 0.5  # share of the waves' energy up to which they count as long; chosen
+# variance of a third difference over that of white noise, 1 + 9 + 9 + 1 (Gasser, Sroka & Jennen-Steinmetz 1986,
+# Biometrika 73, 625-633)
+_THIRD_DIFFERENCES = 20.0
 _FLOOR = 1e-9  # share of the variance that is rounding
 
 
@@ -88,6 +91,12 @@ def identity(first: Signal, second: Signal, means: float, noise: float = 0.0) ->
     return max(softly(nats), _LEAST)
 
 
+def _white_variance(signal: Signal) -> float:
+    """The variance of white noise of a signal, by its third differences."""
+    squares = np.abs(np.diff(signal, 3)) ** 2
+    return float(np.nanmean(squares)) / _THIRD_DIFFERENCES if np.any(np.isfinite(squares)) else 0.0
+
+
 def _rates(signal: Signal, lag: int) -> Signal:
     return signal[lag:] - signal[:-lag]
 
@@ -101,9 +110,10 @@ def _integral(rate: Signal, lag: int) -> Signal:
 def _derivative(angle: tuple[Signal, ...], rate: tuple[Signal, ...], steps: Sequence[float]) -> float:
     """The nats for one signal being the derivative of another; the clearest grid and lag counts."""
     results = [
-        identity(_rates(a, lag), step * _integral(r, lag), _MEANS["rate"])
+        identity(_rates(a, lag), step * _integral(r, lag), _MEANS["rate"], noise)
         for a, r, step in zip(angle, rate, steps, strict=True)
         for lag in _LAGS
+        for noise in [2.0 * _white_variance(a) + lag * step**2 * _white_variance(r)]  # of the difference
     ]
     return max(results, key=abs, default=0.0) if max(results, default=0.0) <= 0.0 else max(results)
 
@@ -163,15 +173,10 @@ class Relations:
         return max(results, default=0.0)
 
     def _place_variance(self, fine: Signal) -> float:
-        """Variance [m^2 s] of white noise of a coordinate in bins of one second, from third differences of fine bins.
-
-        The variance of a third difference is 20 times that of the noise (Gasser et al. 1986, Biometrika 73, 625-633).
-        """
+        """Variance [m^2 s] of white noise of a coordinate in bins of one second, by third differences of fine bins."""
         length = _LAGS[1]  # bins that are averaged: narrower ones than the samples hold no noise of their own
         means = np.mean(fine[: len(fine) // length * length].reshape(-1, length), axis=1)
-        squares = np.abs(np.diff(means, 3)) ** 2
-        noise = float(np.nanmean(squares)) / 40.0 if np.any(np.isfinite(squares)) else 0.0  # 20, of two coordinates
-        return noise * length * self.steps[-1]
+        return 0.5 * _white_variance(means) * length * self.steps[-1]  # 0.5: of two coordinates
 
     def _speed(self, slots: Slots) -> float:
         """A speed against that of the track."""
