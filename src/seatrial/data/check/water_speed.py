@@ -54,9 +54,14 @@ class SpeedAndCurrent:
         return self.courses >= _ROUND or self.is_separate
 
     @property
+    def least_current(self) -> float:
+        """The least current that counts [m/s]: beyond its error, and a share of the speed."""
+        return max(_CLEAR * self.current_error, _LEAST_CURRENT * self.speed)
+
+    @property
     def has_current(self) -> bool:
         """Whether a current shows beyond its error, and matters beside the speed."""
-        return self.current > max(_CLEAR * self.current_error, _LEAST_CURRENT * self.speed)
+        return self.current > self.least_current
 
     def agrees_with(self, other: "SpeedAndCurrent") -> bool:
         """Return whether the currents are one within their errors, or within what does not matter."""

@@ -209,7 +209,8 @@ def _speed_lines(model: StartingModel) -> list[str]:
             f"# U_n = {model.speed:.2f}",
         ]
     if water is not None:
-        left = f"what {_current_text(water)} leaves of" if model.is_in_current else "no current shows in"
+        none = f"no current above {water.least_current:.2g} m/s shows in"
+        left = f"what {_current_text(water)} leaves of" if model.is_in_current else none
         return [
             f"U_n = {water.speed:.2f}    # m/s through the water: {left} the speeds over ground on several courses; "
             "estimated, within what they show"
@@ -293,12 +294,17 @@ def _lever_line(sign: float, size: StatedSize) -> str:
 
 
 def _sensor_lines(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[str]:
-    """That velocities are those of a receiver: fitted as if through the water, a current would end in coefficients."""
+    """That velocities are a receiver's, turned by the compass: a current and its zero would end in coefficients."""
     if model.has_thrusters and any(g.is_used and g.symbol == "u" and g.follows_track for g in guesses):
         return ["[sensors]", 'velocity = "ground"    # as the positions change, over ground: a current is in them', ""]
     if not _is_over_ground(guesses) or not (model.has_thrusters or model.has_forces_of_a_ship):
         return []
-    return ["[sensors]", 'velocity = "ground"    # of a receiver, over ground: a current is in them', ""]
+    return [
+        "[sensors]",
+        'velocity = "ground"    # of a receiver, over ground: a current is in them',
+        'compass = "offset"    # what turned them ahead and aside: its zero is estimated',
+        "",
+    ]
 
 
 def _offset_lines(
