@@ -152,3 +152,13 @@ def test_a_heading_that_is_not_recognised_is_asked_for(tmp_path: Path) -> None:
     text = output("init", str(log), "--length", "12", "--out", str(tmp_path / "trial.toml"))
     assert "Next: no column is recognised as the heading" in text
     assert "--overwrite --column 'bearing of the bow=psi'" in text.replace("\n", " ").replace("  ", " ")
+
+
+def test_heading_and_rudder_that_are_not_recognised_are_asked_for_together(tmp_path: Path) -> None:
+    named = {name: values for name, values in BASE.items() if name != "heading"}
+    log = write(tmp_path / "run.csv", named | {"bearing of the bow": TRUTH["psi"], "blade": TRUTH["delta"]})
+    arguments = ("init", str(log), "--length", "12", "--out", str(tmp_path / "trial.toml"))
+    text = " ".join(output(*arguments).split())
+    named_so = ("--overwrite", "--column", "bearing of the bow=psi", "--column", "blade=delta")
+    assert text.endswith("--overwrite --column 'bearing of the bow=psi' --column blade=delta")
+    assert "not recognised" not in output(*arguments, *named_so)

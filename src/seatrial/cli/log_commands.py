@@ -162,8 +162,11 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
     steps = [f"decide what is OPEN in {out}"] if draft.open_questions or draft.lacks_speed else []
     steps += [f"put the length of the craft after 'L =' in {out} (init --length does)"] if draft.lacks_length else []
     if draft.lacks_heading and (heading := draft.column_like_heading):
-        stated = in_shell(f"{heading}=psi")
-        return f"no column is recognised as the heading: if one is, the same command with --overwrite --column {stated}"
+        rudder = draft.column_like_rudder if draft.lacks_input else ""
+        kinds = "the heading or the rudder: if two are" if rudder else "the heading: if one is"
+        stated = [f"{heading}=psi", *([f"{rudder}=delta"] if rudder else [])]
+        options = " ".join(f"--column {in_shell(one)}" for one in stated)
+        return f"no column is recognised as {kinds}, the same command with --overwrite {options}"
     if draft.lacks_input:
         return _input_to_be_named(draft, out)
     if draft.lacks_manoeuvre:
@@ -182,7 +185,8 @@ def _input_to_be_named(draft: "DraftTrial", out: Path) -> str:
         return (
             f"no column is {kinds}, and a model needs one: record it, too; of the others seatrial check {in_shell(out)}"
         )
-    stated = in_shell(f"{draft.unrecognised[0]}=command_1")
+    rudder = draft.column_like_rudder
+    stated = in_shell(f"{rudder}=delta" if rudder else f"{draft.unrecognised[0]}=command_1")
     return f"no column is recognised as {kinds}: if one is, the same command with --overwrite --column {stated}"
 
 

@@ -1,6 +1,6 @@
 """A trial file drafted from logs: every guess with its evidence, what is unsure as a commented line."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -71,12 +71,20 @@ from seatrial.data.draft.starting_model import (
     with_wind,
 )
 from seatrial.data.draft.stretches import DECAY, STRAIGHT, LogStretch, used_parts
-from seatrial.data.draft.survey import LogSurvey, apart_by_sheet, columns_by_source, survey_logs, with_common_ranges
+from seatrial.data.draft.survey import (
+    ColumnSummary,
+    LogSurvey,
+    apart_by_sheet,
+    columns_by_source,
+    survey_logs,
+    with_common_ranges,
+)
 from seatrial.data.trial.plausibility import ESTIMATED
 from seatrial.data.trial.records import need_release
 from seatrial.data.trial.run_data import run_name
 
 _HEADINGS = (-180.0, 360.0)  # deg, between which a heading lies; ours
+_HARD_OVER = 45.0  # deg, beyond which no rudder goes; chosen
 _WIDER_THAN_A_STATE = 6.0  # range of a column, up to which it may number states, such as those of a fix; chosen
 _MIXED = "mixed"  # kind of a run that holds several manoeuvres, or none that is recognised; ours
 _CALM = 0.1  # of the largest range of a run's waves, below which another run lies in calm water; chosen
@@ -134,10 +142,10 @@ class DraftTrial:
 
     @property
     def lacks_heading(self) -> bool:
-        """Whether what steers is recorded and no heading is recognised, without which the track shows no drift."""
+        """Whether what steers or a track is recorded and no heading is recognised, without which none shows drift."""
         symbols = {g.symbol for part in self.guesses for g in part if g.is_used}
-        steers = any(symbol == "delta" or symbol.startswith(("command_", "rpm_")) for symbol in symbols)
-        return steers and not symbols & {"psi", "psi_magnetic", "q_w"}
+        moves = any(symbol == "delta" or symbol.startswith(("command_", "rpm_")) for symbol in symbols)
+        return (moves or bool(symbols & {"lat", "x0", "cog"})) and not symbols & {"psi", "psi_magnetic", "q_w"}
 
     @property
     def column_like_heading(self) -> str:
@@ -145,17 +153,27 @@ class DraftTrial:
 
         Of those that are not recognised the one of the widest range within what the angle can be, in degrees.
         """
-        columns = [
-            one for run in self.runs for source in run.sources for topic in source.topics for one in topic.columns
-        ]
         low, high = _HEADINGS
-        likely = {
-            column.name: column.high - column.low
-            for column in columns
-            if column.name in self.unrecognised and low <= column.low and column.high <= high
-        }
+        likely = {c.name: c.high - c.low for c in self._unrecognised_columns if low <= c.low and c.high <= high}
         widest = max(likely, key=lambda name: likely[name], default="")
         return widest if likely.get(widest, 0.0) > _WIDER_THAN_A_STATE else ""
+
+    @property
+    def column_like_rudder(self) -> str:
+        """The name of the first column that may be the rudder where no input is recognised; empty where none may.
+
+        Of those that are not recognised one that goes to either side, no farther than rudders do, in degrees.
+        """
+        return next(
+            (c.name for c in self._unrecognised_columns if -_HARD_OVER <= c.low < 0.0 < c.high <= _HARD_OVER), ""
+        )
+
+    @property
+    def _unrecognised_columns(self) -> Iterator[ColumnSummary]:
+        columns = (
+            one for run in self.runs for source in run.sources for topic in source.topics for one in topic.columns
+        )
+        return (column for column in columns if column.name in self.unrecognised)
 
     @property
     def lacks_manoeuvre(self) -> bool:
