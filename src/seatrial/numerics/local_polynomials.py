@@ -11,6 +11,19 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
+# variance of a third difference of white noise over its own: 1 + 9 + 9 + 1
+_THIRD_DIFFERENCE = 20.0
+
+
+def white_variance(values: npt.NDArray) -> float:
+    """Return the variance of white noise on a signal (n,), real or complex, by its third differences.
+
+    What does not change within a few samples cancels (Gasser, Sroka & Jennen-Steinmetz 1986, Biometrika 73, 625-633).
+    0 of fewer than four values, or where no four in a row are finite.
+    """
+    squares = np.abs(np.diff(values, 3)) ** 2
+    return float(np.nanmean(squares)) / _THIRD_DIFFERENCE if np.any(np.isfinite(squares)) else 0.0
+
 
 def smoothed_locally(values: Array, width: int, degree: int, derivative: int = 0, step: float = 1.0) -> Array:
     """Return a derivative of the local polynomials at every sample, of the shape of `values`.

@@ -1,5 +1,6 @@
 """Signals of a record and its motion as declared: what the checks share."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -8,13 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from seatrial.core.values import Array, Record
+from seatrial.numerics.local_polynomials import white_variance
 from seatrial.numerics.resolution import resolution
 
 # Arithmetic the checks share: smoothed derivatives, robust size, integrals, jackknifed least squares, stretches.
 
 RowIndices = NDArray[np.intp]
-# variance of third differences of white noise over its own: 1 + 9 + 9 + 1
-_THIRD_DIFFERENCES = 20.0
 # stretches of a record left out in turn; chosen
 JACKKNIFE_BLOCKS = 8
 
@@ -50,14 +50,11 @@ def cumulative_integral(rate: Array, dt: float) -> Array:
 
 
 def sample_noise(values: Array) -> float:
-    """Standard deviation of white noise on a signal, from third differences: their variance is 1 + 9 + 9 + 1 times its.
+    """Standard deviation of white noise on a signal, by its third differences.
 
-    What does not change within a few samples cancels (Gasser, Sroka & Jennen-Steinmetz 1986, Biometrika 73, 625-633).
     Rounding is noise too, of a variance of a twelfth of the resolution squared (Widrow & Kollar 2008, section 1.4).
     """
-    if len(values) <= 3:
-        return 0.0
-    spread = float(np.sqrt(np.nanmean(np.diff(values, 3) ** 2) / _THIRD_DIFFERENCES))
+    spread = math.sqrt(white_variance(values))
     uniform = float(np.sqrt(12.0))  # width over standard deviation of a uniform distribution
     return max(spread, resolution(values, least=spread * uniform) / uniform)
 

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from seatrial.data.readings.grids import Signal
+from seatrial.numerics.local_polynomials import white_variance
 
 Slots = Mapping[str, tuple[Signal, ...]]
 """What the readings of some variables show, on each grid."""
@@ -25,9 +26,6 @@ _COURSE_SD, _COURSE_SHARE, _COURSE_NUMBERS = math.radians(10.0), 0.9, 14.0
 _SLOW = 0.3  # of the fastest speed, below which a craft has no course; chosen
 _TURNING_CAP, _WAVES, _WAVES_SURE = 12.0, 6.0, 0.5  # nats, nats, share in phase from which a sign is sure; chosen
 _LONG_WAVES = 0.5  # share of the waves' energy up to which they count as long; chosen
-# variance of a third difference over that of white noise, 1 + 9 + 9 + 1 (Gasser, Sroka & Jennen-Steinmetz 1986,
-# Biometrika 73, 625-633)
-_THIRD_DIFFERENCES = 20.0
 _FLOOR = 1e-9  # share of the variance that is rounding
 
 
@@ -91,12 +89,6 @@ def identity(first: Signal, second: Signal, means: float, noise: float = 0.0) ->
     return max(softly(nats), _LEAST)
 
 
-def _white_variance(signal: Signal) -> float:
-    """The variance of white noise of a signal, by its third differences."""
-    squares = np.abs(np.diff(signal, 3)) ** 2
-    return float(np.nanmean(squares)) / _THIRD_DIFFERENCES if np.any(np.isfinite(squares)) else 0.0
-
-
 def _rates(signal: Signal, lag: int) -> Signal:
     return signal[lag:] - signal[:-lag]
 
@@ -113,7 +105,7 @@ def _derivative(angle: tuple[Signal, ...], rate: tuple[Signal, ...], steps: Sequ
         identity(_rates(a, lag), step * _integral(r, lag), _MEANS["rate"], noise)
         for a, r, step in zip(angle, rate, steps, strict=True)
         for lag in _LAGS
-        for noise in [2.0 * _white_variance(a) + lag * step**2 * _white_variance(r)]  # of the difference
+        for noise in [2.0 * white_variance(a) + lag * step**2 * white_variance(r)]  # of the difference
     ]
     return max(results, key=abs, default=0.0) if max(results, default=0.0) <= 0.0 else max(results)
 
@@ -176,7 +168,7 @@ class Relations:
         """Variance [m^2 s] of white noise of a coordinate in bins of one second, by third differences of fine bins."""
         length = _LAGS[1]  # bins that are averaged: narrower ones than the samples hold no noise of their own
         means = np.mean(fine[: len(fine) // length * length].reshape(-1, length), axis=1)
-        return 0.5 * _white_variance(means) * length * self.steps[-1]  # 0.5: of two coordinates
+        return 0.5 * white_variance(means) * length * self.steps[-1]  # 0.5: of two coordinates
 
     def _speed(self, slots: Slots) -> float:
         """A speed against that of the track."""
