@@ -41,6 +41,12 @@ def test_a_circle_in_a_long_log_is_no_averaged_heading() -> None:
     assert smeared_wraps(np.mod(np.cumsum(rate), 2.0 * np.pi)) == []
 
 
+def test_a_short_run_that_is_all_circle_is_searched_within_its_turn_only() -> None:
+    unwrapped = np.radians(np.append(np.full(20, 182.0), 182.0 - 3.0 * np.arange(111)))
+    assert smeared_wraps(unwrapped) == []
+    assert smeared_wraps(np.mod(unwrapped, 2.0 * np.pi)) == []
+
+
 def test_a_heading_interpolated_as_a_number_runs_the_wrong_way_round() -> None:
     time = np.arange(0.0, 100.0, 0.1)
     second = np.mod(np.radians(25.0 * np.sin(time[::10] / 15.0)), 2.0 * np.pi)

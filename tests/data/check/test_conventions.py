@@ -114,3 +114,13 @@ def test_waves_met_ahead_of_midship_refute_no_side_of_heave(place: float, count:
     record = record.with_channel("zeta", replace(record.channel("zeta"), reference_point=place))
     findings, _ = statement_findings(record)
     assert [one.code for one in findings] == ["wrong-sign"] * count
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_noise_of_a_straight_run_contradicts_nothing(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    time = np.arange(280) / 10.0  # a compass that is coarser than the gyro, on a course of 28 s
+    swing = np.radians(3.0 * np.exp(-time / 8.0))
+    channels = {"psi": swing + rng.normal(0.0, np.radians(0.5), 280), "r": np.gradient(swing, 0.1)}
+    channels["r"] += rng.normal(0.0, np.radians(0.25), 280)
+    assert statement_findings(Record.from_arrays("straight", time, channels)) == ((), frozenset())
