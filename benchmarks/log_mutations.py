@@ -115,7 +115,8 @@ def _factor(table: Table, symbol: str, unit: str, factor: float) -> Table:
     name = table.column(symbol)
     assert name is not None
     old = table.truth[name]
-    changed = table.with_values(name, table.cells[name].to_numpy(float) * factor, replace(old, unit=unit))
+    new = replace(old, unit=unit, offset=old.offset * factor)
+    changed = table.with_values(name, table.cells[name].to_numpy(float) * factor, new)
     return changed.renamed({name: _PLAIN.get(symbol, symbol)})
 
 
@@ -139,7 +140,7 @@ def without_units(table: Table, _: np.random.Generator) -> Table:
 
 def reversed_side(table: Table, generator: np.random.Generator) -> Table | None:
     """A column that counts to the other side."""
-    there = [symbol for symbol in _SIDES if table.column(symbol)]
+    there = [s for s in _SIDES if (name := table.column(s)) and table.truth[name].frame != "enu"]
     symbol = str(generator.choice(there))
     name = table.column(symbol)
     assert name is not None
@@ -279,15 +280,20 @@ def thinned(table: Table, _: np.random.Generator) -> Table:
     return replace(table, cells=table.cells.iloc[::5].reset_index(drop=True)) if len(table.cells) > 1000 else table
 
 
+def units_said(table: Table, generator: np.random.Generator) -> Table | None:
+    """Angles, rates or speeds in another unit, which the headings say."""
+    return other_units(table, generator, is_said=True)
+
+
 MUTATIONS: dict[str, Mutation] = {
     one.__name__: one
     for one in (
-        other_units, without_units, reversed_side, heading_from_east, axes_exchanged, velocities_over_ground,
-        wrapped_elsewhere, upside_down, heading_across, whole_numbers, scaled_numbers, wrong_header, other_language,
-        shuffled, decimal_commas, thinned,
+        velocities_over_ground, heading_from_east, reversed_side, axes_exchanged, heading_across, upside_down,
+        wrapped_elsewhere, other_units, units_said, whole_numbers, scaled_numbers, wrong_header, without_units,
+        other_language, thinned, shuffled, decimal_commas,
     )
 }  # fmt: skip
-MUTATIONS["units_said"] = lambda table, generator: other_units(table, generator, is_said=True)
+"""What is done to a log, in the order in which it is done: to its physics first, then to how it is written."""
 
 
 def loaded(name: str) -> Table | None:
@@ -300,7 +306,8 @@ def loaded(name: str) -> Table | None:
 def mutated(table: Table, seed: Sequence[int]) -> Table:
     """Return the table after one to three mutations that it can take."""
     generator = np.random.default_rng(list(seed))
-    for kind in generator.permutation(list(MUTATIONS))[: int(generator.integers(1, 4))]:
+    chosen = generator.permutation(list(MUTATIONS))[: int(generator.integers(1, 4))]
+    for kind in sorted(chosen, key=list(MUTATIONS).index):
         changed = MUTATIONS[kind](table, generator)
         table = table if changed is None else replace(changed, notes=(*table.notes, str(kind)))
     return table
