@@ -36,11 +36,11 @@ from seatrial.reporting.verdict import (
     is_disturbed,
     is_missed,
     largest_error_share,
-    longest_judged,
     verdict,
     worst_errors,
     worst_run,
     worst_share,
+    yardstick,
 )
 
 # What a fit means to those who operate the craft, in a sentence: roll, thrusters, motions in waves.
@@ -160,7 +160,7 @@ def first_screen(fit: Fit, length: float) -> FirstScreen:
     held = fit.validation or fit.predictions
     if not held:
         return FirstScreen(verdict(fit), key_facts(fit), lead=operators_sentence(fit))
-    p = worst_run(held, longest_judged(fit))
+    p = worst_run(held, yardstick(fit))
     view = headline_view(p, length, fit.model.input_names)
     which = "The held-out run" if len(fit.validation) == 1 else (
         "The worst held-out run" if fit.validation else "The worst training run")  # fmt: skip
@@ -199,13 +199,14 @@ def _training_score(fit: Fit) -> tuple[KeyFact, ...]:
     What sensors add is no miss.
     """
     fitted = [p for p in fit.predictions if p.role == "training" and p.divergence is None]
+    by = yardstick(fit)
     shares = [
-        (share, p) for p in fitted if (share := largest_error_share(p)) is not None
+        (share, p) for p in fitted if (share := largest_error_share(p, by)) is not None
         and not is_sensor_noise(share.rms, fit.sensor_errors.get(share.name, 0.0))
     ]  # fmt: skip
     shares.sort(key=lambda row: -row[0].share)
     missed = [p for share, p in shares if share.needs_attention]
-    held = [share for p in fit.validation if (share := largest_error_share(p)) is not None]
+    held = [share for p in fit.validation if (share := largest_error_share(p, by)) is not None]
     if not shares or not held:
         return ()
     tested = max(held, key=lambda share: share.share).grade
