@@ -301,7 +301,7 @@ def _coverage(fit: Fit) -> KeyFact:
         *(f"{fixed(100.0 * share, 0)} % of {label}, simulated whole" for label, share in uncovered.items()),
         *([f"too wide to test: {enumeration(untested)}"] if untested else []),
         *(
-            [f"bands {significant(widest, 2)} times as wide as the error, where 2 would do"]
+            [f"bands {significant(widest, 2)} times as wide as the error: cautious, as 2 hold 95 %"]
             if widest > _CAUTIOUS
             else []
         ),
