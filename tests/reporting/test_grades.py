@@ -15,6 +15,7 @@ from seatrial.core.values import Record
 from seatrial.reporting.verdict import (
     ErrorShare,
     Grade,
+    error_scale,
     error_shares,
     graded_errors,
     is_disturbed,
@@ -27,7 +28,6 @@ from seatrial.reporting.verdict import (
     verdict,
     window_shares,
     worst_share,
-    yardstick,
 )
 
 
@@ -124,7 +124,7 @@ def test_windows_judge_an_unstable_craft_that_leaves_its_run_and_no_other(fit: F
     by_windows = replace(course, predictions=(missed,))
     longest = longest_judged(by_windows)
     assert longest == pytest.approx(9.21, abs=0.01) and judging_window(missed, longest) is missed.windows[0]
-    share = judged_share(missed, yardstick(by_windows))
+    share = judged_share(missed, error_scale(by_windows))
     assert share is not None and share.window == "5 s" and share.grade is Grade.CLOSELY
     assert longest_judged(replace(course, predictions=(kept,))) is None
     whole = replace(fit, predictions=(missed,))

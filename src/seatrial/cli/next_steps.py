@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 FULL_RUDDER_DEG = 35.0  # deg, of most ships' rudders (SOLAS II-1/29)
 RELEASE_DEG = 10.0  # deg, of a release where no run shows one; chosen
 NAMES_SHOWN = 3  # coefficients that a line names; chosen
-_AS_LARGE = 1.0  # standard error over the coefficient from which on it is not determined, as of `not-identifiable`
 
 
 def after_check(findings: "tuple[Finding, ...]", trial: Path) -> str:
@@ -110,7 +109,7 @@ def _design_step(fit: "Fit", model: str, trial: Path | None) -> str:
 
 
 def after_design(design: "Design") -> str:
-    """Return what follows a design: its orders, the standard manoeuvre that is as good, or what no manoeuvre mends."""
+    """Return what follows a design: its orders, a standard manoeuvre, or what none determines."""
     from seatrial.core.results.design import best_baseline, criterion_error, is_within_limits
     from seatrial.reporting.design import LARGEST_SHOWN_ERROR
     from seatrial.reporting.measures import manoeuvre_name
@@ -119,11 +118,11 @@ def after_design(design: "Design") -> str:
     error, best = criterion_error(design.designed, design.criterion), best_baseline(design)
     theirs = math.inf if best is None else criterion_error(best, design.criterion)
     is_beaten = best is not None and is_within_limits(best, design.limits) and theirs <= error
-    if best is not None and is_beaten and theirs < _AS_LARGE:
+    if best is not None and is_beaten and theirs < 1.0:  # the standard error is below the coefficient
         return f"carry out the {manoeuvre_name(best.name)}, as the orders designed are no better, {log}"
     if is_beaten or not error < LARGEST_SHOWN_ERROR:
         errors = zip(design.coefficients, design.designed.relative_error, strict=True)
-        open_ones = [name for name, relative in errors if not relative < _AS_LARGE]
+        open_ones = [name for name, relative in errors if not relative < 1.0]
         shown = f"{', '.join(open_ones[:NAMES_SHOWN])}{' ...' if len(open_ones) > NAMES_SHOWN else ''}"
         return (
             f"none of these manoeuvres determines {shown}: fix them under model.fixed or give them priors, or allow "

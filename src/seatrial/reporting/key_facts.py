@@ -30,6 +30,7 @@ from seatrial.reporting.time_figures import run_figure
 from seatrial.reporting.verdict import (
     ERROR_LABELS,
     Grade,
+    error_scale,
     error_text,
     graded_errors,
     has_converged,
@@ -40,7 +41,6 @@ from seatrial.reporting.verdict import (
     worst_errors,
     worst_run,
     worst_share,
-    yardstick,
 )
 
 # What a fit means to those who operate the craft, in a sentence: roll, thrusters, motions in waves.
@@ -160,7 +160,7 @@ def first_screen(fit: Fit, length: float) -> FirstScreen:
     held = fit.validation or fit.predictions
     if not held:
         return FirstScreen(verdict(fit), key_facts(fit), lead=operators_sentence(fit))
-    p = worst_run(held, yardstick(fit))
+    p = worst_run(held, error_scale(fit))
     view = headline_view(p, length, fit.model.input_names)
     which = "The held-out run" if len(fit.validation) == 1 else (
         "The worst held-out run" if fit.validation else "The worst training run")  # fmt: skip
@@ -199,7 +199,7 @@ def _training_score(fit: Fit) -> tuple[KeyFact, ...]:
     What sensors add is no miss.
     """
     fitted = [p for p in fit.predictions if p.role == "training" and p.divergence is None]
-    by = yardstick(fit)
+    by = error_scale(fit)
     shares = [
         (share, p) for p in fitted if (share := largest_error_share(p, by)) is not None
         and not is_sensor_noise(share.rms, fit.sensor_errors.get(share.name, 0.0))

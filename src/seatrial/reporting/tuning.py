@@ -159,9 +159,7 @@ def _front(tuning: Tuning) -> Section:
     chart = front_chart(tuning)
     if chart is None or seaway_view(tuning) is None:
         return Section("")
-    return Section(
-        "Front", "front", pictures=(Picture(lambda: svg(chart), _front_caption(tuning)),), level=Level.PAGE
-    )
+    return Section("Front", "front", pictures=(Picture(lambda: svg(chart), _front_caption(tuning)),), level=Level.PAGE)
 
 
 def _front_caption(tuning: Tuning) -> str:

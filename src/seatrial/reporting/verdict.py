@@ -113,7 +113,7 @@ class ErrorShare:
 
 
 @dataclass(frozen=True)
-class Yardstick:
+class ErrorScale:
     """What errors of predicted runs are judged by.
 
     Attributes:
@@ -127,26 +127,26 @@ class Yardstick:
     noise: Mapping[str, float] = field(default_factory=dict)
 
 
-WHOLE_RUNS = Yardstick()
+WHOLE_RUNS = ErrorScale()
 """Whole runs of a ship whose length and sensors are not known."""
 
 
-def yardstick(fit: Fit) -> Yardstick:
+def error_scale(fit: Fit) -> ErrorScale:
     """Return what the held-out runs of a fit are judged by."""
     return replace(_whole_runs(fit), longest=longest_judged(fit))
 
 
-def _whole_runs(fit: Fit) -> Yardstick:
-    return Yardstick(None, fit.ship.particulars.get("L", 0.0), fit.sensor_errors)
+def _whole_runs(fit: Fit) -> ErrorScale:
+    return ErrorScale(None, fit.ship.particulars.get("L", 0.0), fit.sensor_errors)
 
 
-def error_shares(p: Prediction, by: Yardstick = WHOLE_RUNS) -> tuple[ErrorShare, ...]:
+def error_shares(p: Prediction, by: ErrorScale = WHOLE_RUNS) -> tuple[ErrorShare, ...]:
     """Return the errors over a whole run as shares of its own motions; none where none can be compared."""
     spreads = motion_spreads(p.rms, p.measured, by.length)
     return _above_noise([ErrorShare(name, p.rms[name], spread) for name, spread in spreads.items()], by)
 
 
-def window_shares(p: Prediction, window: WindowScore, by: Yardstick = WHOLE_RUNS) -> tuple[ErrorShare, ...]:
+def window_shares(p: Prediction, window: WindowScore, by: ErrorScale = WHOLE_RUNS) -> tuple[ErrorShare, ...]:
     """Return the errors over windows as shares of the motions inside such windows."""
     spreads = {
         name: motion_spread(name, _inside_windows(p.measured, channels, window.seconds))
@@ -158,9 +158,9 @@ def window_shares(p: Prediction, window: WindowScore, by: Yardstick = WHOLE_RUNS
     return _above_noise(shares, by)
 
 
-def _above_noise(shares: Sequence[ErrorShare], by: Yardstick) -> tuple[ErrorShare, ...]:
+def _above_noise(shares: Sequence[ErrorShare], by: ErrorScale) -> tuple[ErrorShare, ...]:
     """Leave out motions that are mostly noise of their sensor, which measure no model; all where all are."""
-    kept = tuple(one for one in shares if not is_sensor_noise(one.spread, by.noise.get(one.name, 0.0)))
+    kept = tuple(e for e in shares if not is_sensor_noise(e.spread, by.noise.get(e.name, 0.0)))
     return kept or tuple(shares)
 
 
@@ -175,7 +175,7 @@ def _inside_windows(record: Record, channels: Sequence[str], seconds: float) -> 
     return motions
 
 
-def largest_error_share(p: Prediction, by: Yardstick = WHOLE_RUNS) -> ErrorShare | None:
+def largest_error_share(p: Prediction, by: ErrorScale = WHOLE_RUNS) -> ErrorShare | None:
     """Return the error over a whole run that is the largest share of its own motion; None: none can be compared."""
     return max(error_shares(p, by), key=lambda error_share: error_share.share, default=None)
 
@@ -211,31 +211,31 @@ def judging_window(p: Prediction, longest: float) -> WindowScore | None:
     return short[-1] if short else next(iter(ordered), None)
 
 
-def judged_shares(p: Prediction, by: Yardstick) -> tuple[ErrorShare, ...]:
+def judged_shares(p: Prediction, by: ErrorScale) -> tuple[ErrorShare, ...]:
     """Return the errors by which a run is judged."""
     window = None if by.longest is None or p.divergence is not None else judging_window(p, by.longest)
     return error_shares(p, by) if window is None else window_shares(p, window, by)
 
 
-def judged_share(p: Prediction, by: Yardstick) -> ErrorShare | None:
+def judged_share(p: Prediction, by: ErrorScale) -> ErrorShare | None:
     """Return the largest of them; None where none can be compared."""
     return max(judged_shares(p, by), key=lambda share: share.share, default=None)
 
 
-def run_error(p: Prediction, by: Yardstick = WHOLE_RUNS) -> float:
+def run_error(p: Prediction, by: ErrorScale = WHOLE_RUNS) -> float:
     """Return the largest share of its motion that a run misses, infinite where it diverges."""
     share = judged_share(p, by)
     return math.inf if p.divergence is not None else 0.0 if share is None else share.share
 
 
-def worst_run(runs: Sequence[Prediction], by: Yardstick = WHOLE_RUNS) -> Prediction:
+def worst_run(runs: Sequence[Prediction], by: ErrorScale = WHOLE_RUNS) -> Prediction:
     """Return the run with the largest error."""
     return max(runs, key=lambda p: run_error(p, by))
 
 
 def worst_share(fit: Fit) -> ErrorShare | None:
     """Return the largest of all errors by which held-out runs are judged; None where none can be compared."""
-    by = yardstick(fit)
+    by = error_scale(fit)
     return judged_share(worst_run(fit.validation, by), by) if fit.validation else None
 
 
@@ -253,7 +253,7 @@ def is_carried(fit: Fit) -> bool:
 
 def graded_errors(fit: Fit) -> str:
     """Return the errors of the worst run of its motions: ``2.3° of 14° in heading: well``; empty: unknown."""
-    by, worst = yardstick(fit), worst_share(fit)
+    by, worst = error_scale(fit), worst_share(fit)
     if worst is None:
         return ""
     shares = judged_shares(worst_run(fit.validation, by), by)
@@ -335,7 +335,7 @@ def _score_clauses(fit: Fit) -> tuple[str, str]:
         return "No run was simulated with this fit", ""
     if not held:
         return _fitted_clauses(fit.predictions)
-    by = yardstick(fit)
+    by = error_scale(fit)
     if len(held) == 1:
         return _one_run_clauses(held[0], fit.predictions, by)
     return _several_runs_clauses(held, fit.predictions, by)
@@ -351,7 +351,7 @@ def _fitted_clauses(predictions: Sequence[Prediction]) -> tuple[str, str]:
     return f"Reproduces its {runs}{f' to {errors}' if errors else ''}", "no held-out run tests the model"
 
 
-def _one_run_clauses(p: Prediction, predictions: Sequence[Prediction], by: Yardstick) -> tuple[str, str]:
+def _one_run_clauses(p: Prediction, predictions: Sequence[Prediction], by: ErrorScale) -> tuple[str, str]:
     """How a single held-out run is predicted, as a grade and its errors."""
     run = f"the held-out {run_name(p)}"
     if p.divergence is not None:
@@ -364,12 +364,12 @@ def _one_run_clauses(p: Prediction, predictions: Sequence[Prediction], by: Yards
     return f"Predicts {run}{grade}{f': {errors}' if errors else ''}", repeat
 
 
-def _carried_clause(by: Yardstick) -> str:
+def _carried_clause(by: ErrorScale) -> str:
     """That a disturbance explains a miss; empty where none carries the craft so far, by `longest_judged`."""
     return "the estimated disturbance alone leaves most of that" if by.longest == math.inf else ""
 
 
-def _judged_errors(p: Prediction, by: Yardstick) -> str:
+def _judged_errors(p: Prediction, by: ErrorScale) -> str:
     """The errors by which a run is judged; where windows judge it, in those."""
     window = None if by.longest is None else judging_window(p, by.longest)
     if window is None:
@@ -379,7 +379,7 @@ def _judged_errors(p: Prediction, by: Yardstick) -> str:
     return f"{errors} over {window.window}"
 
 
-def _worst_errors(held: Sequence[Prediction], by: Yardstick) -> str:
+def _worst_errors(held: Sequence[Prediction], by: ErrorScale) -> str:
     """The name of the worst of several runs, or of the only one, and its errors: ``, R35 worst: 5.3° in heading``."""
     worst = worst_run(held, by)
     errors = _judged_errors(worst, by)
@@ -388,7 +388,7 @@ def _worst_errors(held: Sequence[Prediction], by: Yardstick) -> str:
 
 
 def _several_runs_clauses(
-    held: Sequence[Prediction], predictions: Sequence[Prediction], by: Yardstick
+    held: Sequence[Prediction], predictions: Sequence[Prediction], by: ErrorScale
 ) -> tuple[str, str]:
     """How held-out runs are predicted: the worst of them counts, and is named where it is predicted poorly."""
     diverged = [p.record for p in held if p.divergence is not None]

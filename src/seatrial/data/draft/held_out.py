@@ -348,7 +348,7 @@ def _middle(
 def _is_full(group: tuple[str, ...], kinds: Mapping[str, str]) -> bool:
     """Whether runs are zigzags or circles beside which others of the kind are left to train."""
     kind = kinds[group[0]]
-    return kind in (ZIGZAG, CIRCLE) and any(one == kind for name, one in kinds.items() if name not in group)
+    return kind in (ZIGZAG, CIRCLE) and any(other == kind for name, other in kinds.items() if name not in group)
 
 
 def _lie_within(model: StartingModel, names: Set[str], *, records: Mapping[str, Record], beyond: float) -> bool:

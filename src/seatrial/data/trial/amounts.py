@@ -262,7 +262,7 @@ def schema_error(error: ValidationError, table: type, source: str) -> InputError
             return InputError(f"{where}unknown key '{key_path(location)}'{_key_hint(first, table)}")
         case "missing":
             places = (fault["loc"] for fault in faults if fault["type"] == "missing")
-            missing = [f"'{key_path(one)}'" for one in places if one[: len(location) - 1] == location[:-1]]
+            missing = [f"'{key_path(place)}'" for place in places if place[: len(location) - 1] == location[:-1]]
             if len(missing) == 1:
                 return InputError(f"{where}key {missing[0]} is missing; add it")
             return InputError(f"{where}keys {enumeration(missing)} are missing; add them")

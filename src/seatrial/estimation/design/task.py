@@ -52,7 +52,7 @@ def recorded_request(trial: Trial) -> tuple[DesignRequest, dict[str, float]]:
 def _without_inputs(model: Model) -> str:
     """Return what can be done where no run shows how an input moves."""
     if "phi" in model.states and not model.has_course:
-        return "orders cannot be designed for releases: record more of them, from larger angles, or roll that fins excite"
+        return "orders cannot be designed for releases: record more of them, from larger angles, or with fins moving"
     return "add a table [design] with [design.inputs]"
 
 
