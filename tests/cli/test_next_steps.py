@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 from tests.reporting.fabricated import fabricated_fit
+from tests.reporting.fabricated_design import fabricated_design
 
-from seatrial.cli.next_steps import after_campaign, after_check, after_fit
+from seatrial.cli.next_steps import after_campaign, after_check, after_design, after_fit
 from seatrial.core.results import Divergence
 from seatrial.core.results.campaign import CampaignStatus
 from seatrial.core.values import Finding, Record, Severity, TrialEdit
@@ -75,6 +76,27 @@ def test_after_a_fit_of_decays_a_release_is_simulated(rng: np.random.Generator) 
 def test_after_a_fit_of_spectra_which_predicts_no_run_its_report_is_named() -> None:
     spectral = replace(fabricated_fit(), model=heave_pitch(), predictions=())
     assert after_fit(spectral, OUT, TRIAL) == "seatrial report results"
+
+
+def test_after_a_design_its_orders_a_standard_manoeuvre_or_nothing_is_carried_out() -> None:
+    design = fabricated_design()
+    best = design.baselines[1]  # random steps; its worst error is below one
+
+    def erring(factor: float) -> str:
+        errors = factor * best.relative_error
+        return after_design(replace(design, designed=replace(design.designed, relative_error=errors)))
+
+    log = "then seatrial init LOG --out trial.toml with the log of it"
+    assert best.worst < 1.0
+    assert erring(0.5) == f"carry out orders.csv, {log}"
+    assert erring(2.0) == f"carry out the prbs 35 10, as the orders designed are no better, {log}"
+    hopeless = replace(best, relative_error=np.full(11, 12.0))
+    alone = replace(design, baselines=(hopeless,), designed=replace(design.designed, relative_error=np.full(11, 13.0)))
+    assert after_design(alone).startswith("none of these manoeuvres determines X_uu, X_vv, X_rr ...: fix them")
+    better = replace(alone, designed=replace(design.designed, relative_error=np.full(11, 11.0)))
+    assert after_design(better) == f"carry out orders.csv, {log}"
+    unmoved = replace(alone, baselines=(), designed=replace(design.designed, relative_error=np.full(11, math.inf)))
+    assert after_design(unmoved).startswith("none of these")
 
 
 def test_after_a_campaign_it_goes_on_is_tried_again_or_gathered() -> None:

@@ -5,9 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.control.fin_tasks import PAPER_OBJECTIVES, PUBLISHED, QUICK, VARIANCES, fin_task
+from tests.control.loop_files import write_loop_file
 
-from seatrial.control.front import Effort, grid_front, pareto_front, refuse_infeasible, spread_points, thin_front
+from seatrial.control.front import (
+    RATES,
+    Effort,
+    grid_front,
+    pareto_front,
+    rate_curve,
+    refuse_infeasible,
+    spread_points,
+    thin_front,
+)
 from seatrial.control.gain_evaluation import all_gains, free_gain_bounds, gain_evaluator, refine_gains
+from seatrial.control.loopfile.load import tuning_task
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.core.values import InputError
 from seatrial.numerics.optimise import hypervolume, non_dominated
@@ -45,6 +56,42 @@ def test_with_a_washout_the_papers_gains_lie_near_the_front():
     made = pareto_front(one, "three gains", 0, _silent, QUICK)
     ratio = (made.objectives / one.evaluate(PUBLISHED[None]).objectives).max(axis=1).min()
     assert 0.95 <= ratio <= 1.0
+
+
+CATAMARAN = """
+[plant]
+response = { num = [7.4371, 33.818, 10.634], den = [1.0, 9.2539, 25.160, 18.190, 7.0121, 0.0] }
+output = "psi"
+actuator = "delta"
+speed = 1.34
+[controller]
+kind = "pid"
+sample_s = 0.1
+[actuator]
+limit = { value = 0.4, unit = "rad" }
+rate = { value = 10, unit = "rad/s" }
+dead_time = 0.1
+[sensors]
+noise = { value = 0.5, unit = "deg" }
+[limits]
+Ms = 1.8
+[[slow_disturbances]]
+rms = { value = 0.05, unit = "rad" }
+bandwidth = 0.2
+[demand]
+change = { value = 30, unit = "deg" }
+time_constant = 1.5
+"""
+
+
+def test_no_controller_of_the_front_beats_an_optimum_along_the_rate(tmp_path):
+    """Followed from the least rate alone, optima of this thruster craft stay without an integral up to twice it."""
+    judge = gain_evaluator(tuning_task(write_loop_file(tmp_path, CATAMARAN)))
+    curve = rate_curve(judge, 0)
+    values = judge.evaluate(curve.gains_at(curve.levels)).objectives
+    front = pareto_front(judge, "three gains", 0, _silent, QUICK).objectives
+    assert len(values) == RATES
+    assert not (front[:, None] < (1.0 - 1e-6) * values).all(axis=2).any()
 
 
 def test_same_seed_same_front():

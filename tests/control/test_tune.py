@@ -107,6 +107,31 @@ def test_gains_on_their_bounds_are_found():
     assert "gain-on-bound" not in {one.code for one in findings(evaluator, inside, (), front, Checks())}
 
 
+def test_a_term_left_out_says_whether_the_front_uses_it_and_what_it_leaves():
+    evaluator = gain_evaluator(fin_task())
+    front = pareto_front(evaluator, "fins", 0, lambda _: None, TINY)
+    without = replace(front, gains=front.gains * [1.0, 0.0, 1.0])
+    chosen = describe_controller(evaluator, "chosen", PUBLISHED * [1.0, 0.0, 1.0])
+    used, unused = (
+        next(one.text for one in findings(evaluator, chosen, (), made, Checks()) if one.code == "gain-at-zero")
+        for made in (front, without)
+    )
+    assert re.fullmatch(r"gain KI ends at zero; on the front it reaches [\d.]+", used)  # a slow lag is no integral
+    assert unused == "gain KI ends at zero as on the whole front"
+
+
+def test_an_integral_left_out_leaves_an_offset(tmp_path):
+    evaluator = gain_evaluator(tuning_task(write_loop_file(tmp_path, PATROL_BOAT)))
+    front = pareto_front(evaluator, "heading", 0, lambda _: None, TINY)
+    gains = np.array([1.0, 0.0, 2.0])
+    assert evaluator.loop.gains.names == ("KP", "KI", "KD")
+    chosen = describe_controller(evaluator, "chosen", gains)
+    (found,) = (one for one in findings(evaluator, chosen, (), front, Checks()) if one.code == "gain-at-zero")
+    assert "where the demand does not count," in found.text
+    assert found.text.endswith("have no steady part, and such a part would leave an offset")
+    assert "[controller.gains.KI] lower" in found.advice
+
+
 def test_gains_of_a_fit_that_warned_say_so():
     ship = TrimmedShip(roll(), np.zeros(2), np.zeros(1), "alpha", "phi", warnings=("the search did not converge",))
     warned = replace(gain_evaluator(fin_task()), task=replace(fin_task(), trimmed_ship=ship))

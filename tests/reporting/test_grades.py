@@ -15,6 +15,7 @@ from seatrial.core.values import Record
 from seatrial.reporting.verdict import (
     ErrorShare,
     Grade,
+    error_scale,
     error_shares,
     graded_errors,
     is_disturbed,
@@ -81,6 +82,25 @@ def test_turning_on_the_spot_hides_no_error_of_heading(fit: Fit) -> None:
     assert graded_errors(replace(fit, predictions=(p,))) == "80° of 100° in heading: poorly"
 
 
+def test_a_motion_that_is_noise_of_its_sensor_decides_no_grade(fit: Fit) -> None:
+    assert fit.noise_model is not None
+    time = np.arange(0.0, 60.0, 0.1)
+    place = 0.3 * np.sin(time)
+    run = Record.from_arrays("spin", time, {"psi": 1.5 * time, "x0": place, "y0": place})  # spreads by 0.3 m
+    p = replace(fit.validation[0], measured=run, rms={"psi_deg": 1.0, "position_m": 0.4})
+    ship = replace(fit.ship, particulars={})
+
+    def graded(noise: float) -> Fit:
+        seen = replace(fit.noise_model, measurement={"x0": noise, "y0": noise})
+        return replace(fit, ship=ship, predictions=(p,), noise_model=seen)
+
+    near, far = (worst_share(graded(noise)) for noise in (0.16, 0.05))
+    assert near is not None and near.name == "psi_deg" and near.grade is Grade.CLOSELY
+    assert far is not None and far.name == "position_m" and far.grade is Grade.NOT
+    alone = replace(graded(0.16), predictions=(replace(p, rms={"position_m": 0.4}),))
+    assert worst_share(alone) is not None  # nothing else to judge by
+
+
 def ramp_in_windows(fit: Fit, whole: float, *inside: tuple[float, float]) -> Prediction:
     """A heading that climbs 1 deg/s for 60 s; its error over the whole run, and over windows: seconds, error [deg]."""
     time = np.arange(0.0, 60.0, 0.1)
@@ -104,7 +124,7 @@ def test_windows_judge_an_unstable_craft_that_leaves_its_run_and_no_other(fit: F
     by_windows = replace(course, predictions=(missed,))
     longest = longest_judged(by_windows)
     assert longest == pytest.approx(9.21, abs=0.01) and judging_window(missed, longest) is missed.windows[0]
-    share = judged_share(missed, longest)
+    share = judged_share(missed, error_scale(by_windows))
     assert share is not None and share.window == "5 s" and share.grade is Grade.CLOSELY
     assert longest_judged(replace(course, predictions=(kept,))) is None
     whole = replace(fit, predictions=(missed,))

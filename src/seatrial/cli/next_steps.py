@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from seatrial.cli.screen import in_shell
 
 if TYPE_CHECKING:
-    from seatrial.core.results import Fit
+    from seatrial.core.results import Design, Fit
     from seatrial.core.results.campaign import CampaignStatus
     from seatrial.core.values import Finding
 
@@ -106,6 +106,29 @@ def _design_step(fit: "Fit", model: str, trial: Path | None) -> str:
         return ""
     shown = f"{', '.join(names[:NAMES_SHOWN])}{' ...' if len(names) > NAMES_SHOWN else ''}"
     return f"; for a manoeuvre that determines {shown}: seatrial design {in_shell(trial)} --from {model} --out plan"
+
+
+def after_design(design: "Design") -> str:
+    """Return what follows a design: its orders, a standard manoeuvre, or what none determines."""
+    from seatrial.core.results.design import best_baseline, criterion_error, is_within_limits
+    from seatrial.reporting.design import LARGEST_SHOWN_ERROR
+    from seatrial.reporting.measures import manoeuvre_name
+
+    log = "then seatrial init LOG --out trial.toml with the log of it"
+    error, best = criterion_error(design.designed, design.criterion), best_baseline(design)
+    theirs = math.inf if best is None else criterion_error(best, design.criterion)
+    is_beaten = best is not None and is_within_limits(best, design.limits) and theirs <= error
+    if best is not None and is_beaten and theirs < 1.0:  # the standard error is below the coefficient
+        return f"carry out the {manoeuvre_name(best.name)}, as the orders designed are no better, {log}"
+    if is_beaten or not error < LARGEST_SHOWN_ERROR:
+        errors = zip(design.coefficients, design.designed.relative_error, strict=True)
+        open_ones = [name for name, relative in errors if not relative < 1.0]
+        shown = f"{', '.join(open_ones[:NAMES_SHOWN])}{' ...' if len(open_ones) > NAMES_SHOWN else ''}"
+        return (
+            f"none of these manoeuvres determines {shown}: fix them under model.fixed or give them priors, or allow "
+            "more range, time or room under [design]"
+        )
+    return f"carry out orders.csv, {log}"
 
 
 def after_campaign(status: "CampaignStatus", store: Path) -> str:

@@ -7,7 +7,7 @@ import typer
 
 from seatrial.cli.application import Json, OwnModelPath, Seed, TrialPath, app, own_model, result_document, write_json
 from seatrial.cli.finding_output import exit_if_errors, print_findings, write_correction
-from seatrial.cli.next_steps import after_check, after_fit
+from seatrial.cli.next_steps import after_check, after_design, after_fit
 from seatrial.cli.progress import progress_reporter
 from seatrial.cli.result_output import print_design, print_fit
 from seatrial.cli.screen import print_file, print_next
@@ -222,4 +222,4 @@ def design(
     write_json(json, lambda: result_document(result))
     print_file("orders", out / "orders.csv")
     print_file("report", page)
-    print_next("carry out orders.csv, then seatrial init LOG --out trial.toml with the log of it")
+    print_next(after_design(result))

@@ -68,6 +68,7 @@ def findings(
         for text in (ship.warnings if ship is not None else ())
     ]
     found += _gain_findings(evaluator, chosen, method)
+    found += _zero_gain_findings(evaluator, chosen, front)
     found += _simulation_findings(checks.simulations, checks.comparisons, method)
     found += _demand_findings(evaluator.task.demand, checks.manoeuvres)
     found += [
@@ -120,13 +121,30 @@ def _gain_findings(evaluator: GainEvaluator, chosen: Controller, method: TuningM
                  "may lie beyond", f"widen it: [controller.gains.{name}] {end} in the loop file")
         for name, end, bound in gains_on_bound(loop, np.array([chosen.gains[gain] for gain in loop.gains.names]))
     ]  # fmt: skip
-    for gain in loop.gains.free:
-        if gain.lower == 0.0 and abs(chosen.gains[gain.name]) <= ON_BOUND * gain.upper:
-            found.append(Finding(Severity.INFO, "gain-at-zero", f"gain {gain.name} ends at zero: its term is not "
-                                 "needed"))  # fmt: skip
     if chosen.violated:
         found.append(_warning("breaks-limits", f"the chosen gains do not keep: {'; '.join(chosen.violated)}",
                               _advice("try more", method)))  # fmt: skip
+    return found
+
+
+def _zero_gain_findings(evaluator: GainEvaluator, chosen: Controller, front: ParetoFront) -> list[Finding]:
+    """Return which terms the chosen gains leave out, whether others of the front use them, what that leaves behind."""
+    found, loop = list[Finding](), evaluator.loop
+    where = "on the front" if evaluator.task.demand is None else "on the front, where the demand does not count,"
+    for gain, term in zip(loop.gains, loop.terms, strict=True):
+        if not gain.free or gain.lower != 0.0 or abs(chosen.gains[gain.name]) > ON_BOUND * gain.upper:
+            continue
+        text, advice = f"gain {gain.name} ends at zero", ""
+        if front.gain_names == loop.gains.names:  # those of a structure with more terms have a front of their own
+            used = front.gains[:, front.gain_names.index(gain.name)].max(initial=0.0)
+            text += f"; {where} it reaches {used:.3g}" if used > ON_BOUND * gain.upper else " as on the whole front"
+        if term.block.den[-1] == 0.0:  # a pole at the origin: an integral
+            text += "; the disturbances stated have no steady part, and such a part would leave an offset"
+            advice = (
+                "where a steady wind or current acts, keep the integral: write a lower bound above zero, "
+                f"[controller.gains.{gain.name}] lower, in the loop file"
+            )
+        found.append(Finding(Severity.INFO, "gain-at-zero", text, "", advice))
     return found
 
 

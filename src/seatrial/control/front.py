@@ -62,8 +62,11 @@ class RateCurve:
         return self.evaluator.evaluate(self.samples)
 
     def gains_at(self, levels: Array) -> Array:
-        """Return gains of least motion at each level, followed from those at the nearest rates, (n, g)."""
-        for level in levels.tolist():
+        """Return gains of least motion at each level, followed from those at the nearest rates, (n, g).
+
+        The fastest first: an integral that begins to help at a rate is at zero below it, and is not met from there.
+        """
+        for level in np.flip(levels).tolist():
             if level not in self.optima:
                 self.optima[level] = self._gains_at(level)
         return np.array([self.optima[level] for level in levels.tolist()]).reshape(-1, self.samples.shape[1])

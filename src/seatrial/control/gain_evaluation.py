@@ -364,21 +364,17 @@ def least_output_gains(evaluator: GainEvaluator, samples: Array, near: Sequence[
     """Return the best samples pressed against the restrictions; the least first objective wins, (g,).
 
     Where no sample keeps them, the one that breaks them least. near: optima (g,) under restrictions that are nearly the
-    same; followed to these they are the answer, unless they break them or a sample is better (continuation: Allgower &
-    Georg 1990, Numerical Continuation Methods).
+    same, from which the search begins as well (continuation: Allgower & Georg 1990, Numerical Continuation Methods); it
+    alone stays on the branch of optima where it began, such as without an integral.
     """
     judged, (places, (low, _)) = evaluator.evaluate(samples), free_gain_bounds(evaluator)
     values = np.where(judged.is_feasible, judged.objectives[:, 0], np.inf)
     order = np.argsort(values if np.isfinite(values).any() else judged.excess.max(axis=1))
     tried = [samples[i] for i in order[:_STARTS]]
-    followed = [_pressed_gains(evaluator, start[places]) for start in near]
-    best = _best_of(evaluator, [*followed, *tried])
-    if any(best is one for one in followed) and evaluator.evaluate(best[None]).is_feasible[0]:
-        return best
     faces = np.tile(tried[0][places], (len(places), 1))  # an optimum may lie where a term is left out
     np.fill_diagonal(faces, low)
-    starts = [*(start[places] for start in tried), *faces]
-    best = _best_of(evaluator, [best, *followed, *(_pressed_gains(evaluator, start) for start in starts)])
+    starts = [*(start[places] for start in (*near, *tried)), *faces]
+    best = _best_of(evaluator, [*tried, *(_pressed_gains(evaluator, start) for start in starts)])
     for _ in range(_RESTARTS):  # the search's picture of the curvature begins anew
         again = _best_of(evaluator, [best, _pressed_gains(evaluator, best[places])])
         if np.allclose(again, best, rtol=_ROUNDING, atol=0.0):

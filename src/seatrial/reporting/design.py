@@ -133,7 +133,8 @@ def _prior_draws(design: Design) -> str:
         all(not ours >= theirs[k] for theirs in compared) for k, ours in enumerate(errors) if not math.isnan(ours)
     )
     finite = [x for x in errors if not math.isnan(x)]
-    reach = f"from {_percent(min(finite))} to {_percent(max(finite))}" if finite else "not known"
+    ends = list(dict.fromkeys(_percent(end) for end in (min(finite), max(finite)))) if finite else []
+    reach = f"from {' to '.join(ends)}" if len(ends) > 1 else next(iter(ends), "not known")
     text = f"On {counted(len(errors), 'ship')} drawn from the prior it is {reach}"
     if compared:
         which = "any standard manoeuvre within the limits" if _has_limits(design) else "any standard manoeuvre"

@@ -30,13 +30,13 @@ from seatrial.reporting.time_figures import run_figure
 from seatrial.reporting.verdict import (
     ERROR_LABELS,
     Grade,
+    error_scale,
     error_text,
     graded_errors,
     has_converged,
     is_disturbed,
     is_missed,
     largest_error_share,
-    longest_judged,
     verdict,
     worst_errors,
     worst_run,
@@ -160,7 +160,7 @@ def first_screen(fit: Fit, length: float) -> FirstScreen:
     held = fit.validation or fit.predictions
     if not held:
         return FirstScreen(verdict(fit), key_facts(fit), lead=operators_sentence(fit))
-    p = worst_run(held, longest_judged(fit))
+    p = worst_run(held, error_scale(fit))
     view = headline_view(p, length, fit.model.input_names)
     which = "The held-out run" if len(fit.validation) == 1 else (
         "The worst held-out run" if fit.validation else "The worst training run")  # fmt: skip
@@ -199,13 +199,14 @@ def _training_score(fit: Fit) -> tuple[KeyFact, ...]:
     What sensors add is no miss.
     """
     fitted = [p for p in fit.predictions if p.role == "training" and p.divergence is None]
+    by = error_scale(fit)
     shares = [
-        (share, p) for p in fitted if (share := largest_error_share(p)) is not None
+        (share, p) for p in fitted if (share := largest_error_share(p, by)) is not None
         and not is_sensor_noise(share.rms, fit.sensor_errors.get(share.name, 0.0))
     ]  # fmt: skip
     shares.sort(key=lambda row: -row[0].share)
     missed = [p for share, p in shares if share.needs_attention]
-    held = [share for p in fit.validation if (share := largest_error_share(p)) is not None]
+    held = [share for p in fit.validation if (share := largest_error_share(p, by)) is not None]
     if not shares or not held:
         return ()
     tested = max(held, key=lambda share: share.share).grade
@@ -300,7 +301,7 @@ def _coverage(fit: Fit) -> KeyFact:
         *(f"{fixed(100.0 * share, 0)} % of {label}, simulated whole" for label, share in uncovered.items()),
         *([f"too wide to test: {enumeration(untested)}"] if untested else []),
         *(
-            [f"bands {significant(widest, 2)} times as wide as the error, where 2 would do"]
+            [f"bands {significant(widest, 2)} times as wide as the error: cautious, as 2 hold 95 %"]
             if widest > _CAUTIOUS
             else []
         ),

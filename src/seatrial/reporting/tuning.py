@@ -121,7 +121,7 @@ def html(tuning: Tuning) -> str:
         tuning_text.verdict(tuning),
         tuning_text.key_facts(tuning),
         lead or front,
-        lead_caption if lead else FRONT_CAPTION if front else "",
+        lead_caption if lead else _front_caption(tuning) if front else "",
         gains_title="Answer of the genetic algorithm" if tuning.search else "Recommended gains",
         gains=tuple(zip(map(tuning_rows.gain_symbol, tuning.chosen.gains), values, strict=True)),
     )
@@ -159,10 +159,14 @@ def _front(tuning: Tuning) -> Section:
     chart = front_chart(tuning)
     if chart is None or seaway_view(tuning) is None:
         return Section("")
+    return Section("Front", "front", pictures=(Picture(lambda: svg(chart), _front_caption(tuning)),), level=Level.PAGE)
+
+
+def _front_caption(tuning: Tuning) -> str:
+    """What the front is of, and what its controllers need not keep."""
+    demand = " They keep the limits; they need not follow the demand." if tuning.manoeuvres else ""
     more = " With three objectives and more, a front fills a region in each pair." if len(tuning.objectives) > 2 else ""
-    return Section(
-        "Front", "front", pictures=(Picture(lambda: svg(chart), f"{FRONT_CAPTION}{more}"),), level=Level.PAGE
-    )
+    return f"{FRONT_CAPTION}{demand}{more}"
 
 
 def _search(tuning: Tuning) -> Section:

@@ -108,11 +108,11 @@ def quantity_text(symbol: str, value: float, per: str = "") -> str:
 
 
 def percent(share: float) -> str:
-    """Return a share in per cent: ``74.2 %``; less than 1 % with one digit, less than 0.05 % as next to 0."""
+    """Return a share in per cent: ``74.2 %``; below 1 % with one digit; ``less than 0.05 %``."""
     if not math.isfinite(share):
         return "–"
     if abs(share) < 5e-4:  # rounds to 0.0 %
-        return "next to 0 %" if share else "0 %"
+        return "less than 0.05 %" if share else "0 %"
     return f"{fixed(100.0 * share, 1) if abs(share) >= 0.01 else significant(100.0 * share, 1)} %"
 
 

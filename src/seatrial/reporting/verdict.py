@@ -1,8 +1,8 @@
 """How well runs are predicted: grades, repeats of one manoeuvre, and the verdict in one sentence."""
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
@@ -15,6 +15,7 @@ from seatrial.core.results.prediction import (
     is_sensor_noise,
     motion_spread,
     motion_spreads,
+    with_hull_ends,
 )
 from seatrial.core.text.numbers import duration, significant
 from seatrial.core.text.words import enumeration
@@ -68,7 +69,7 @@ _GRADE_LIMITS = ", ".join(f"{grade} to {limit:g}" for grade, limit in _LIMITS.it
 GRADE_NOTE = (
     f"Grades: error over the standard deviation of the motion, {_GRADE_LIMITS}. That of a held course is "
     f"{math.degrees(HELD_COURSE_SPREAD):.0f}° of heading and where they lead, that of a heading that turns on and on "
-    f"{math.degrees(HEADING_SPREAD):.0f}°."
+    f"{math.degrees(HEADING_SPREAD):.0f}°, that of a place at least how far the heading swings the ends of the hull."
 )
 """How a grade comes about, once for a page."""
 
@@ -111,19 +112,56 @@ class ErrorShare:
         return self.grade not in (Grade.CLOSELY, Grade.WELL)
 
 
-def error_shares(p: Prediction) -> tuple[ErrorShare, ...]:
+@dataclass(frozen=True)
+class ErrorScale:
+    """What errors of predicted runs are judged by.
+
+    Attributes:
+        longest: s, how long windows that judge them may be; None: whole runs do.
+        length: of the ship, m; 0: not known.
+        noise: errors of the sensors, as of `sensor_errors`.
+    """
+
+    longest: float | None = None
+    length: float = 0.0
+    noise: Mapping[str, float] = field(default_factory=dict)
+
+
+WHOLE_RUNS = ErrorScale()
+"""Whole runs of a ship whose length and sensors are not known."""
+
+
+def error_scale(fit: Fit) -> ErrorScale:
+    """Return what the held-out runs of a fit are judged by."""
+    return replace(_whole_runs(fit), longest=longest_judged(fit))
+
+
+def _whole_runs(fit: Fit) -> ErrorScale:
+    return ErrorScale(None, fit.ship.particulars.get("L", 0.0), fit.sensor_errors)
+
+
+def error_shares(p: Prediction, by: ErrorScale = WHOLE_RUNS) -> tuple[ErrorShare, ...]:
     """Return the errors over a whole run as shares of its own motions; none where none can be compared."""
-    return tuple(ErrorShare(name, p.rms[name], spread) for name, spread in motion_spreads(p.rms, p.measured).items())
+    spreads = motion_spreads(p.rms, p.measured, by.length)
+    return _above_noise([ErrorShare(name, p.rms[name], spread) for name, spread in spreads.items()], by)
 
 
-def window_shares(p: Prediction, window: WindowScore) -> tuple[ErrorShare, ...]:
+def window_shares(p: Prediction, window: WindowScore, by: ErrorScale = WHOLE_RUNS) -> tuple[ErrorShare, ...]:
     """Return the errors over windows as shares of the motions inside such windows."""
-    return tuple(
-        ErrorShare(name, window.scores[name].rms,
-                   motion_spread(name, _inside_windows(p.measured, channels, window.seconds)), window.window)
+    spreads = {
+        name: motion_spread(name, _inside_windows(p.measured, channels, window.seconds))
         for name, channels in MOTIONS.items()
         if name in window.scores and all(c in p.measured for c in channels)
-    )  # fmt: skip
+    }
+    spreads = with_hull_ends(spreads, by.length)
+    shares = [ErrorShare(name, window.scores[name].rms, spread, window.window) for name, spread in spreads.items()]
+    return _above_noise(shares, by)
+
+
+def _above_noise(shares: Sequence[ErrorShare], by: ErrorScale) -> tuple[ErrorShare, ...]:
+    """Leave out motions that are mostly noise of their sensor, which measure no model; all where all are."""
+    kept = tuple(e for e in shares if not is_sensor_noise(e.spread, by.noise.get(e.name, 0.0)))
+    return kept or tuple(shares)
 
 
 def _inside_windows(record: Record, channels: Sequence[str], seconds: float) -> list[Array]:
@@ -137,9 +175,9 @@ def _inside_windows(record: Record, channels: Sequence[str], seconds: float) -> 
     return motions
 
 
-def largest_error_share(p: Prediction) -> ErrorShare | None:
+def largest_error_share(p: Prediction, by: ErrorScale = WHOLE_RUNS) -> ErrorShare | None:
     """Return the error over a whole run that is the largest share of its own motion; None: none can be compared."""
-    return max(error_shares(p), key=lambda error_share: error_share.share, default=None)
+    return max(error_shares(p, by), key=lambda error_share: error_share.share, default=None)
 
 
 def longest_judged(fit: Fit) -> float | None:
@@ -148,7 +186,8 @@ def longest_judged(fit: Fit) -> float | None:
     Deviations grow whatever the model is worth where the craft is course unstable, or where the disturbance that was
     estimated carries it so far: where a whole run is then predicted roughly at best, windows judge all of them.
     """
-    worst = [(p, share) for p in fit.validation if p.divergence is None and (share := largest_error_share(p))]
+    by = _whole_runs(fit)
+    worst = [(p, share) for p in fit.validation if p.divergence is None and (share := largest_error_share(p, by))]
     if not any(p.windows for p in fit.validation) or not any(share.needs_attention for _, share in worst):
         return None
     if (course := unstable_course(fit)) is not None:
@@ -172,32 +211,32 @@ def judging_window(p: Prediction, longest: float) -> WindowScore | None:
     return short[-1] if short else next(iter(ordered), None)
 
 
-def judged_shares(p: Prediction, longest: float | None) -> tuple[ErrorShare, ...]:
-    """Return the errors by which a run is judged; longest: as `longest_judged`."""
-    window = None if longest is None or p.divergence is not None else judging_window(p, longest)
-    return error_shares(p) if window is None else window_shares(p, window)
+def judged_shares(p: Prediction, by: ErrorScale) -> tuple[ErrorShare, ...]:
+    """Return the errors by which a run is judged."""
+    window = None if by.longest is None or p.divergence is not None else judging_window(p, by.longest)
+    return error_shares(p, by) if window is None else window_shares(p, window, by)
 
 
-def judged_share(p: Prediction, longest: float | None) -> ErrorShare | None:
+def judged_share(p: Prediction, by: ErrorScale) -> ErrorShare | None:
     """Return the largest of them; None where none can be compared."""
-    return max(judged_shares(p, longest), key=lambda share: share.share, default=None)
+    return max(judged_shares(p, by), key=lambda share: share.share, default=None)
 
 
-def run_error(p: Prediction, longest: float | None = None) -> float:
+def run_error(p: Prediction, by: ErrorScale = WHOLE_RUNS) -> float:
     """Return the largest share of its motion that a run misses, infinite where it diverges."""
-    share = judged_share(p, longest)
+    share = judged_share(p, by)
     return math.inf if p.divergence is not None else 0.0 if share is None else share.share
 
 
-def worst_run(runs: Sequence[Prediction], longest: float | None = None) -> Prediction:
-    """Return the run with the largest error; longest: as `longest_judged`."""
-    return max(runs, key=lambda p: run_error(p, longest))
+def worst_run(runs: Sequence[Prediction], by: ErrorScale = WHOLE_RUNS) -> Prediction:
+    """Return the run with the largest error."""
+    return max(runs, key=lambda p: run_error(p, by))
 
 
 def worst_share(fit: Fit) -> ErrorShare | None:
     """Return the largest of all errors by which held-out runs are judged; None where none can be compared."""
-    longest = longest_judged(fit)
-    return judged_share(worst_run(fit.validation, longest), longest) if fit.validation else None
+    by = error_scale(fit)
+    return judged_share(worst_run(fit.validation, by), by) if fit.validation else None
 
 
 def is_missed(fit: Fit) -> bool:
@@ -214,11 +253,11 @@ def is_carried(fit: Fit) -> bool:
 
 def graded_errors(fit: Fit) -> str:
     """Return the errors of the worst run of its motions: ``2.3° of 14° in heading: well``; empty: unknown."""
-    longest, worst = longest_judged(fit), worst_share(fit)
+    by, worst = error_scale(fit), worst_share(fit)
     if worst is None:
         return ""
-    shares = judged_shares(worst_run(fit.validation, longest), longest)
-    noise = fit.sensor_errors
+    shares = judged_shares(worst_run(fit.validation, by), by)
+    noise = by.noise
     texts = [
         f"{error_text(e.name, e.rms)} of {error_text(e.name, e.spread)} in {ERROR_LABELS[e.name][0]}"
         + (f" (sensor noise {error_text(e.name, n)})" if is_sensor_noise(e.rms, n := noise.get(e.name, 0.0)) else "")
@@ -296,10 +335,10 @@ def _score_clauses(fit: Fit) -> tuple[str, str]:
         return "No run was simulated with this fit", ""
     if not held:
         return _fitted_clauses(fit.predictions)
-    longest = longest_judged(fit)
+    by = error_scale(fit)
     if len(held) == 1:
-        return _one_run_clauses(held[0], fit.predictions, longest)
-    return _several_runs_clauses(held, fit.predictions, longest)
+        return _one_run_clauses(held[0], fit.predictions, by)
+    return _several_runs_clauses(held, fit.predictions, by)
 
 
 def _fitted_clauses(predictions: Sequence[Prediction]) -> tuple[str, str]:
@@ -312,30 +351,27 @@ def _fitted_clauses(predictions: Sequence[Prediction]) -> tuple[str, str]:
     return f"Reproduces its {runs}{f' to {errors}' if errors else ''}", "no held-out run tests the model"
 
 
-def _one_run_clauses(p: Prediction, predictions: Sequence[Prediction], longest: float | None) -> tuple[str, str]:
-    """How a single held-out run is predicted, as a grade and its errors.
-
-    longest: of windows that judge it [s]; None: the whole run does.
-    """
+def _one_run_clauses(p: Prediction, predictions: Sequence[Prediction], by: ErrorScale) -> tuple[str, str]:
+    """How a single held-out run is predicted, as a grade and its errors."""
     run = f"the held-out {run_name(p)}"
     if p.divergence is not None:
         return f"Does not predict {run}: the simulation diverges after {duration(p.divergence.seconds)}", ""
-    largest, errors = judged_share(p, longest), _judged_errors(p, longest)
+    largest, errors = judged_share(p, by), _judged_errors(p, by)
     if largest is not None and largest.grade is Grade.NOT:
-        return f"Does not predict {run}: {errors}", _carried_clause(longest)
+        return f"Does not predict {run}: {errors}", _carried_clause(by)
     grade = "" if largest is None else f" {largest.grade}"
     repeat = "it repeats a fitted manoeuvre" if repeated_runs(p, predictions) else ""
     return f"Predicts {run}{grade}{f': {errors}' if errors else ''}", repeat
 
 
-def _carried_clause(longest: float | None) -> str:
+def _carried_clause(by: ErrorScale) -> str:
     """That a disturbance explains a miss; empty where none carries the craft so far, by `longest_judged`."""
-    return "the estimated disturbance alone leaves most of that" if longest == math.inf else ""
+    return "the estimated disturbance alone leaves most of that" if by.longest == math.inf else ""
 
 
-def _judged_errors(p: Prediction, longest: float | None) -> str:
+def _judged_errors(p: Prediction, by: ErrorScale) -> str:
     """The errors by which a run is judged; where windows judge it, in those."""
-    window = None if longest is None else judging_window(p, longest)
+    window = None if by.longest is None else judging_window(p, by.longest)
     if window is None:
         return worst_errors([p])
     names = [name for name in _MAIN_ERRORS if name in window.scores][:MAX_ERRORS]
@@ -343,26 +379,23 @@ def _judged_errors(p: Prediction, longest: float | None) -> str:
     return f"{errors} over {window.window}"
 
 
-def _worst_errors(held: Sequence[Prediction], longest: float | None) -> str:
+def _worst_errors(held: Sequence[Prediction], by: ErrorScale) -> str:
     """The name of the worst of several runs, or of the only one, and its errors: ``, R35 worst: 5.3° in heading``."""
-    worst = worst_run(held, longest)
-    errors = _judged_errors(worst, longest)
+    worst = worst_run(held, by)
+    errors = _judged_errors(worst, by)
     name = f", {worst.record} worst" if len(held) > 1 else f" ({worst.record})"
     return f"{name}: {errors}" if errors else name
 
 
 def _several_runs_clauses(
-    held: Sequence[Prediction], predictions: Sequence[Prediction], longest: float | None
+    held: Sequence[Prediction], predictions: Sequence[Prediction], by: ErrorScale
 ) -> tuple[str, str]:
-    """How held-out runs are predicted: the worst of them counts, and is named where it is predicted poorly.
-
-    longest: of windows that judge them [s]; None: whole runs do.
-    """
+    """How held-out runs are predicted: the worst of them counts, and is named where it is predicted poorly."""
     diverged = [p.record for p in held if p.divergence is not None]
     if diverged:
         names = enumeration(diverged, MAX_NAMES)
         return f"Does not predict {len(diverged)} of {len(held)} held-out runs: the simulation diverges ({names})", ""
-    grades = {p.record: share.grade for p in held if (share := judged_share(p, longest)) is not None}
+    grades = {p.record: share.grade for p in held if (share := judged_share(p, by)) is not None}
     worst = _worst(grades.values())
     if worst in (Grade.POORLY, Grade.NOT):
         names = [name for name, grade in grades.items() if grade is worst]
@@ -370,11 +403,11 @@ def _several_runs_clauses(
         verb = "Does not predict" if worst is Grade.NOT else "Predicts poorly"
         graded = _graded([grades.get(p.record) for p in others])
         remainder = f"the other{'s' if len(others) > 1 else ''}{graded}" if graded else ""
-        score = f"{verb} {len(names)} of {len(held)} held-out runs{_worst_errors(missed, longest)}"
-        return score, remainder or _carried_clause(longest)
+        score = f"{verb} {len(names)} of {len(held)} held-out runs{_worst_errors(missed, by)}"
+        return score, remainder or _carried_clause(by)
     repeats = sum(bool(repeated_runs(p, predictions)) for p in held)
     repeat = f"{repeats} {'repeats' if repeats == 1 else 'repeat'} a fitted manoeuvre" if repeats else ""
-    return f"Predicts {len(held)} held-out runs{_graded(list(grades.values()))}{_worst_errors(held, longest)}", repeat
+    return f"Predicts {len(held)} held-out runs{_graded(list(grades.values()))}{_worst_errors(held, by)}", repeat
 
 
 def _worst(grades: Iterable[Grade | None]) -> Grade | None:

@@ -45,3 +45,17 @@ def test_the_way_along_a_held_course_is_no_motion_to_measure_a_position_by() -> 
     )
     assert 75.0 / turned == pytest.approx(0.032, abs=5e-4)
     assert leg == pytest.approx(turned * math.sin(math.radians(10.0)))
+
+
+def test_on_the_spot_a_place_spreads_as_far_as_the_hull_ends_swing() -> None:
+    """A craft of 2 m that turns round and round: its ends move by 1 m; one that turns little, by that share of it."""
+    names, wander = {"psi_deg": 1.0, "position_m": 0.44}, 0.3 * SWING
+    spin, swing, unknown = (
+        motion_spreads(names, Record.from_arrays("spin", TIME, {"x0": wander, "y0": 0.0 * wander, "psi": psi}), length)
+        for psi, length in ((0.5 * TIME, 2.0), (0.4 * SWING, 2.0), (0.5 * TIME, 0.0))
+    )
+    assert spin["position_m"] == pytest.approx(1.0)
+    assert swing["position_m"] == pytest.approx(0.4 / math.sqrt(2.0))
+    assert unknown["position_m"] == pytest.approx(0.3 / math.sqrt(2.0))
+    far = Record.from_arrays("circle", TIME, {"x0": 30.0 * SWING, "y0": 0.0 * SWING, "psi": 0.5 * TIME})
+    assert motion_spreads(names, far, 2.0)["position_m"] == pytest.approx(30.0 / math.sqrt(2.0))

@@ -1,6 +1,7 @@
 """A trial file drafted from logs of a craft that is simulated: units, frames and signs as planted, nothing silent."""
 
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -371,6 +372,16 @@ def test_ranges_are_those_of_all_files(tmp_path: Path) -> None:
         write(tmp_path / f"{name}.csv", {**BASE, "rudder": degrees * swing})
     guess = next(g for part in draft_trial(tmp_path).guesses for g in part if g.symbol == "delta")
     assert "from -35 to 35: degrees" in guess.evidence
+
+
+def test_places_say_more_digits_where_both_ends_read_alike_and_show_a_course_without_a_speed(tmp_path: Path) -> None:
+    place = {"latitude": 47.6 + TRUTH["x0"] / 111200.0 / 100.0, "longitude": 9.3 + TRUTH["y0"] / 75000.0 / 100.0}
+    columns = {"time": TRUTH["t"], **place, "course_deg": BASE["heading"], "heading": BASE["heading"]}
+    draft = draft_trial(write(tmp_path / "run.csv", columns))
+    found = {guess.symbol: guess for part in draft.guesses for guess in part}
+    ends = re.findall(r"from ([\d.]+) to ([\d.]+)", " ".join(found["lat"].evidence))
+    assert len(ends) == 1 and ends[0][0] != ends[0][1]
+    assert found["cog"].unused_because == "the positions show the course over ground"
 
 
 def test_the_rate_of_an_engine_is_the_propellers_where_its_gear_is_stated(tmp_path: Path) -> None:

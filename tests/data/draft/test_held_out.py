@@ -53,6 +53,15 @@ def test_repeats_are_held_out_together() -> None:
     assert answer.names == ("z20", "again") and answer.why == ""
 
 
+def test_a_full_manoeuvre_whose_kind_trains_too_is_held_out_before_a_change_of_course() -> None:
+    zigzags = {"z15": zigzag("z15", 15.0), "z20": zigzag("z20", 20.0)}
+    records = {**zigzags, "turn_1": turn(17.0), "turn_2": turn(17.0), "p": turn(-35.0), "s": turn(35.0)}
+    kinds = {"z15": "zigzag", "z20": "zigzag", "turn_1": "turn", "turn_2": "turn", "p": "circle", "s": "circle"}
+    assert held_out_runs(SIMPLE, records, kinds).names == ("z15",), "of two the smaller one"
+    alone = {name: one for name, one in records.items() if name != "z15"}
+    assert held_out_runs(SIMPLE, alone, kinds).names == ("turn_1", "turn_2"), "the only zigzag trains"
+
+
 def test_a_repeat_that_alone_can_be_held_out_is_called_one() -> None:
     records = {"z20": zigzag("z20", 20.0), "again": zigzag("again", 20.0)}
     answer = held_out_runs(SIMPLE, records)

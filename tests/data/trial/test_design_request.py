@@ -94,6 +94,14 @@ def test_neither_records_nor_a_design_is_refused(planned: Path) -> None:
         load_trial(planned)
 
 
+def test_all_keys_that_the_table_lacks_are_named_at_once(planned: Path) -> None:
+    text = PLANNED.replace('duration = { value = 10, unit = "min" }\n', "").replace("hold = 4\n", "")
+    planned.write_text(text.replace('unit = "deg"\nrate', "rate"))
+    lacking = r"keys 'design.duration', 'design.inputs.delta.unit' and 'design.inputs.delta.hold' are missing; add them"
+    with pytest.raises(InputError, match=lacking):
+        load_trial(planned)
+
+
 WRONG = [
     ("unknown key", "draws = 7", "drows = 7", r"unknown key 'design.drows'; did you mean 'draws'"),
     ("unknown key of an input", "lower = -35", "lowr = -35", r"unknown key 'design.inputs.delta.lowr'.*'lower'"),

@@ -150,3 +150,10 @@ def test_a_trial_without_moving_inputs_or_records_is_refused() -> None:
         recorded_request(_trial(0.0))
     with pytest.raises(InputError, match=r"no table \[design\]"):
         recorded_request(replace(_trial(20.0), runs=()))
+
+
+def test_of_releases_more_are_advised_in_place_of_orders() -> None:
+    released = Record.from_arrays("run", TIME, {"phi": 0.2 * np.exp(-0.01 * TIME) * np.cos(TIME)})
+    trial = Trial(Ship("craft", {"L": 3.0}), (Run(released, Role.TRAIN),), model_named("roll"))
+    with pytest.raises(InputError, match="orders cannot be designed for releases: record more of them"):
+        recorded_request(trial)

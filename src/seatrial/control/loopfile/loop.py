@@ -345,5 +345,5 @@ def _meaning(symbol: str) -> str:
 
 def _unit(symbol: str, power: int) -> str:
     unit = symbol_unit(symbol)
-    base = f"{unit}^2" if unit.isalpha() else f"({unit})^2"
+    base = f"{unit}^2" if unit.isalpha() else "1" if unit == "1" else f"({unit})^2"
     return base + ("" if power == 0 else f"/s^{2 * power}")

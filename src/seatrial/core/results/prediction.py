@@ -46,10 +46,15 @@ def motion_spread(name: str, motions: Sequence[Array]) -> float:
     return spread * (_DEGREES if name.endswith("_deg") else 1.0)
 
 
-def motion_spreads(names: Container[str], measured: Record) -> dict[str, float]:
+def motion_spreads(names: Container[str], measured: Record, length: float = 0.0) -> dict[str, float]:
     """Return what errors of these names over a whole run are compared with, as far as it holds their channels.
 
     Of a held course the way run is no motion to measure a model by: what counts is how far one 10 degrees off leads.
+
+    Args:
+        names: of errors, as in `Prediction.rms`.
+        measured: the run.
+        length: of the ship, m, as for `with_hull_ends`.
     """
     compared = (name for name, channels in MOTIONS.items() if name in names and all(c in measured for c in channels))
     spreads = {name: motion_spread(name, [measured[c] for c in MOTIONS[name]]) for name in compared}
@@ -57,7 +62,22 @@ def motion_spreads(names: Container[str], measured: Record) -> dict[str, float]:
         spreads["psi_deg"] = _DEGREES * HELD_COURSE_SPREAD
         if "position_m" in spreads:
             spreads["position_m"] *= math.sin(HELD_COURSE_SPREAD)
-    return spreads
+    return with_hull_ends(spreads, length)
+
+
+def with_hull_ends(spreads: dict[str, float], length: float) -> dict[str, float]:
+    """Return spreads with that of the position at least as far as the heading swings the ends of the hull.
+
+    On the spot the place is no motion to measure a model by: it wanders by what receivers err by.
+
+    Args:
+        spreads: name of an error -> standard deviation of its motion, in its unit.
+        length: of the ship, m; 0: not known.
+    """
+    if not {"psi_deg", "position_m"} <= spreads.keys():
+        return spreads
+    swung = 0.5 * length * min(spreads["psi_deg"] / _DEGREES, 1.0)  # rad; L / 2 all round, by its two coordinates
+    return spreads | {"position_m": max(spreads["position_m"], swung)}
 
 
 def sensor_errors(noise: Mapping[str, float]) -> dict[str, float]:

@@ -608,6 +608,9 @@ def _superfluous(used: set[str]) -> dict[str, str]:
     follows = {"stw": {"u", "sog"}, "psi_magnetic": {"psi"}, "lat": {"x0"}, "lon": {"y0"}, "sog": {"u"}, "cog": {"v"}}
     mates = (("sog", "cog"), ("cog", "sog"), ("lat", "lon"), ("lon", "lat"))
     reasons = {one: f"needs {mate}, which no column is" for one, mate in mates if mate not in used}
+    if used & {"lat", "x0"}:
+        shown = (("sog", "speed"), ("cog", "course"))
+        reasons |= {s: f"the positions show the {word} over ground" for s, word in shown if s in reasons}
     reasons |= {one: f"{min(better & used)} is there" for one, better in follows.items() if better & used}
     steers = any(one == "delta" or one.startswith(("command_", "rpm_", "alpha_")) for one in used)
     if "phi" in used and not steers and not used & _PLACE_OR_SPEED:

@@ -229,8 +229,9 @@ def held_out_runs(
     A model of a ship's propeller and rudder, or of thrusters, is judged by manoeuvres of several kinds of which two at
     least train it; of a ship without so many by the turning circles to one side where those to the other and a zigzag
     train it, or by one zigzag where there are as many of these. Else it is the upper middle one by size of the
-    manoeuvres whose inputs lie within the others', with its repeats; of two the smaller one, since the larger one shows
-    more to the estimate. Where nothing but a repeat can be held out, that is said.
+    manoeuvres whose inputs lie within the others', with its repeats: of zigzags and circles beside which another of the
+    kind trains it, where there are any, as a change of course tests little. Of two it is the smaller one, since the
+    larger one shows more to the estimate. Where nothing but a repeat can be held out, that is said.
 
     Empty where there is none: a model is not judged beyond the runs that it is fitted to, nor by one that hardly
     steers.
@@ -238,7 +239,7 @@ def held_out_runs(
     Args:
         model: decides which rule holds.
         records: of the runs.
-        kinds: of the manoeuvres of the runs, of a craft that no rudder steers.
+        kinds: of the manoeuvres of the runs; empty: by what the rudder orders.
     """
     return _chosen(model, records, kinds).timed(records)
 
@@ -247,12 +248,9 @@ def _chosen(model: StartingModel, records: Mapping[str, Record], kinds: Mapping[
     if not model.inputs:
         return NOTHING_HELD_OUT
     orders = {name: steered_orders(one) if "delta" in model.inputs else None for name, one in records.items()}
-    groups = _repeats(orders)
-    kinds = (
-        {name: kind_of_orders(one) for name, one in orders.items()}
-        if model.has_propeller
-        else kinds or dict.fromkeys(records, "")
-    )
+    groups, by_orders = _repeats(orders), {name: kind_of_orders(one) for name, one in orders.items()}
+    full = {name: kinds[name] for name in records} if kinds else by_orders
+    kinds = by_orders if model.has_propeller else kinds or dict.fromkeys(records, "")
     several = _of_several_kinds(model, records, orders, kinds)
     if several is not None:
         return several
@@ -260,9 +258,9 @@ def _chosen(model: StartingModel, records: Mapping[str, Record], kinds: Mapping[
         if zigzags := _zigzags_instead(model, records, groups, kinds):
             return HeldOutRuns(zigzags, "circles to either side are fitted, of which there are no others")
         return HeldOutRuns(circles, "circles to one side; those to the other are fitted")
-    if middle := _middle(model, records, groups):
+    if middle := _middle(model, records, groups, full):
         return HeldOutRuns(middle)
-    single = _middle(model, records, [(name,) for name in records])
+    single = _middle(model, records, [(name,) for name in records], full)
     repeated = [name for group in groups if set(single) & set(group) for name in group if name not in single]
     if not repeated:
         return HeldOutRuns(single)
@@ -302,7 +300,7 @@ def _zigzags_instead(
     """The middle group of zigzags, where there are as many as circles and others are left; else nothing."""
     counts = Counter(kinds.values())
     zigzags = [group for group in groups if kinds[group[0]] == ZIGZAG and len(group) < counts[ZIGZAG]]
-    return _middle(model, records, zigzags) if counts[ZIGZAG] >= counts[CIRCLE] else ()
+    return _middle(model, records, zigzags, kinds) if counts[ZIGZAG] >= counts[CIRCLE] else ()
 
 
 def _circles_to_one_side(orders: Mapping[str, SteeredOrders | None]) -> tuple[str, ...]:
@@ -328,17 +326,29 @@ def _repeats(orders: Mapping[str, SteeredOrders | None]) -> list[tuple[str, ...]
     return groups
 
 
-def _middle(model: StartingModel, records: Mapping[str, Record], groups: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
-    """The upper middle one by size of the groups of runs that the others include; empty where none is."""
+def _middle(
+    model: StartingModel, records: Mapping[str, Record], groups: Sequence[tuple[str, ...]], kinds: Mapping[str, str]
+) -> tuple[str, ...]:
+    """The upper middle one by size of the groups of runs that the others include; empty where none is.
+
+    Of the full manoeuvres of which others are left, where there is one.
+    """
     sizes = {name: _size(model, record) for name, record in records.items()}
     steered = [group for group in groups if sizes[group[0]] > _HARDLY_STEERED * max(sizes.values())]
     within = (
-        [g for g in steered if _lie_within(model, set(g), records=records, beyond=share)]
+        [g for g in able if _lie_within(model, set(g), records=records, beyond=share)]
+        for able in ([g for g in steered if _is_full(g, kinds)], steered)
         for share in (_BEYOND, _FARTHER_BEYOND)
     )
     inside = next((found for found in within if found), [])
     ordered = sorted(inside, key=lambda group: sizes[group[0]])
     return ordered[len(ordered) // 2 if len(ordered) >= _CHOICE else 0] if ordered else ()
+
+
+def _is_full(group: tuple[str, ...], kinds: Mapping[str, str]) -> bool:
+    """Whether runs are zigzags or circles beside which others of the kind are left to train."""
+    kind = kinds[group[0]]
+    return kind in (ZIGZAG, CIRCLE) and any(other == kind for name, other in kinds.items() if name not in group)
 
 
 def _lie_within(model: StartingModel, names: Set[str], *, records: Mapping[str, Record], beyond: float) -> bool:

@@ -114,6 +114,14 @@ def _grouped(places: Sequence[_Place]) -> list[list[_Place]]:
     return [*groups, *([one] for one in places if id(one) not in taken)]
 
 
+def _extent(low: float, high: float) -> str:
+    """Return ``from 47.6 to 47.62``: of four digits, and more where both ends would read alike."""
+    digits = 4
+    while low < high and f"{low:.{digits}g}" == f"{high:.{digits}g}":
+        digits += 1
+    return f"from {low:.{digits}g} to {high:.{digits}g}"
+
+
 def _decided(guess: ColumnGuess, place: _Place, verdict: ReadingVerdict, k: int) -> ColumnGuess:
     """The guess as it is read, with the reason; open where another reading is near."""
     best, rival = verdict.best.readings[k], verdict.rival.readings[k] if verdict.rival is not None else None
@@ -122,7 +130,7 @@ def _decided(guess: ColumnGuess, place: _Place, verdict: ReadingVerdict, k: int)
         guess, unit=best.unit, frame=best.frame, positive=best.positive, offset=best.offset, scale=best.factor,
         candidates=tuple(sorted(((t, n) for t, n in candidates.items() if t), key=lambda pair: pair[1])),
     )  # fmt: skip
-    text = f"from {place.column.low:.4g} to {place.column.high:.4g}"
+    text = _extent(place.column.low, place.column.high)
     if is_impossible(best, place.named.samples):
         none = f"{text}: no {_WORDS.get(best.unit, best.unit)}"
         return replace(read, other_reading=_instead(best, place)).with_evidence(none)

@@ -21,6 +21,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import ErrorDetails
 from pydantic_core.core_schema import CoreSchema, no_info_after_validator_function, simple_ser_schema
 
+from seatrial.core.text.words import enumeration
 from seatrial.core.values import InputError, si_unit, spelling_hint
 
 # Amounts of trial and loop files: a number with its unit, a plain SI value once validated.
@@ -248,16 +249,23 @@ def _key_hint(error: ErrorDetails, table: type) -> str:
 def schema_error(error: ValidationError, table: type, source: str) -> InputError:
     """Return the first fault as one sentence; an unknown key before a missing one, which may be its right spelling.
 
+    With a missing key come all that its table lacks, of the tables in it too.
+
     source: the file, or the class of settings written in Python, with which the sentence begins.
     """
-    first = min(error.errors(), key=lambda fault: fault["type"] not in _UNKNOWN_KEY)
+    faults = error.errors()
+    first = min(faults, key=lambda fault: fault["type"] not in _UNKNOWN_KEY)
     location = first["loc"]
     where = f"{source}: "
     match first["type"]:
         case kind if kind in _UNKNOWN_KEY:
             return InputError(f"{where}unknown key '{key_path(location)}'{_key_hint(first, table)}")
         case "missing":
-            return InputError(f"{where}key '{key_path(location)}' is missing; add it")
+            places = (fault["loc"] for fault in faults if fault["type"] == "missing")
+            missing = [f"'{key_path(place)}'" for place in places if place[: len(location) - 1] == location[:-1]]
+            if len(missing) == 1:
+                return InputError(f"{where}key {missing[0]} is missing; add it")
+            return InputError(f"{where}keys {enumeration(missing)} are missing; add them")
         case "value_error":
             key = f"{key_path(location)}: " if location else ""
             return InputError(f"{where}{key}{first.get('ctx', {}).get('error', first['msg'])}")

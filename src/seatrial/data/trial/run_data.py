@@ -132,7 +132,7 @@ def _assembled(files: tuple[SourceFile, ...], states: _States, read: LogReader) 
         return _Assembled(record, tuple(events))
     start = float(np.floor(first))
     moment = datetime.fromtimestamp(start, UTC)
-    step = f"time counted from {moment:%Y-%m-%dT%H:%M:%SZ}"
+    step = f"time counted from {moment:%Y-%m-%d %H:%M:%S} of the log's clock"  # whose zone logs seldom state
     record = replace(record, time=record.time - start, provenance=record.provenance.with_step(step))
     shifted = tuple(replace(event, time=event.time - start) for event in events)
     return _Assembled(record, shifted, f"{moment:%Y-%m-%d}")

@@ -41,12 +41,19 @@ def recorded_request(trial: Trial) -> tuple[DesignRequest, dict[str, float]]:
     ranges = {name: _range(records, name, hold) for name in names}
     moved = {name: one for name, one in ranges.items() if one is not None}
     if not moved:
-        raise InputError("no input moves in the training runs; add a table [design] with [design.inputs]")
+        raise InputError(f"no input moves in the training runs; {_without_inputs(trial.model)}")
     held = {name: float(np.median(longest[name])) for name in names if name not in moved}
     request = DesignRequest(
         duration=longest.duration, rate=min(_SLOWEST_RATE, 1.0 / longest.dt), inputs=moved, held=held
     )
     return request, _sensors(trial.model, records)
+
+
+def _without_inputs(model: Model) -> str:
+    """Return what can be done where no run shows how an input moves."""
+    if "phi" in model.states and not model.has_course:
+        return "orders cannot be designed for releases: record more of them, from larger angles, or with fins moving"
+    return "add a table [design] with [design.inputs]"
 
 
 def _range(records: Sequence[Record], name: str, hold: float) -> InputRange | None:
