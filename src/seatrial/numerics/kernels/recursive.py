@@ -2,7 +2,8 @@
 
 import math
 
-from numba import njit
+import numpy as np
+from numba import njit, void
 
 from seatrial.numerics.kernels.integrate import DIVERGED, rk4_tangent_step
 from seatrial.numerics.kernels.kernel import CUBE, F8, I8, INDEX, LEAN, MATRIX, OPTIONS, TABLE, TANGENT, VECTOR, kernel
@@ -48,15 +49,47 @@ def update_scalar(root, z, v, predicted_variance, variance, e):
 
 
 @njit(inline="always", **OPTIONS)
+def update_jumps(root, h, v, total, e, effects, information, score, seen):
+    """Take in an innovation e of variance `total` = h' P h + r, v = R' h, before `update_scalar` does.
+
+    A jump of relative size d at instant m moves the error of z by effects_m d, so that an innovation moves by
+    h' effects_m d: score += g e / total, information += g g' / total, g = effects_m' h, and effects_m -= K g', K the
+    gain (Willsky & Jones 1976, IEEE Trans. AC 21, 108, eqs (13) to (18)). effects (n, m k), information (m, k, k),
+    score (m, k), seen (m k,).
+    """
+    k = score.shape[1]
+    for c in range(seen.size):
+        seen[c] = 0.0
+    for i in range(h.size):
+        if h[i] != 0.0:
+            for c in range(seen.size):
+                seen[c] += h[i] * effects[i, c]
+    for m in range(score.shape[0]):
+        for a in range(k):
+            g = seen[m * k + a] / total
+            score[m, a] += g * e
+            for b in range(k):
+                information[m, a, b] += g * seen[m * k + b]
+    for i in range(h.size):
+        gain = 0.0
+        for j in range(h.size):
+            gain += root[i, j] * v[j]
+        gain /= total
+        for c in range(seen.size):
+            effects[i, c] -= gain * seen[c]
+
+
+@njit(inline="always", **OPTIONS)
 def update_sample(
-    root, z, z_reference, h, predicted, measured, variance, huber_limit, memory, running_means, counts, v
-):
+    root, z, z_reference, h, predicted, measured, variance, huber_limit, memory, running_means, counts, v,
+    effects, information, score, seen,
+):  # fmt: skip
     """Update by all channels of one sample, NaN being no measurement.
 
     h (ny, n), predicted (ny,): slopes and values at z_reference. An innovation beyond `huber_limit` standard deviations
     counts linearly (Huber 1964): its variance is raised as far as its weight falls, and what moves z ends at the limit.
     running_means (ny, 2): over the latest `memory` of the squared innovation, by its variance and plain, cut at the
-    limit; counts (2, ny).
+    limit; counts (2, ny). effects to seen: see `update_jumps`, no columns where no jump is looked for.
     """
     n = z.size
     for channel in range(variance.size):
@@ -78,7 +111,10 @@ def update_sample(
         running_means[channel, 1] += weight * ((cut * e) ** 2 - running_means[channel, 1])
         r /= cut
         most = huber_limit * math.sqrt(spread + r)
-        update_scalar(root, z, v, spread, r, min(max(e, -most), most))
+        e = min(max(e, -most), most)
+        if seen.size > 0:
+            update_jumps(root, h[channel], v, spread + r, e, effects, information, score, seen)
+        update_scalar(root, z, v, spread, r, e)
 
 
 @njit(inline="always", **OPTIONS)
@@ -104,24 +140,25 @@ _GAUSSIAN_STATE = (VECTOR, MATRIX)
 _SAMPLES = (MATRIX, MATRIX, I8, I8)
 _NOISE = (VECTOR, F8, F8, MATRIX, TABLE)
 _FORGETTING = (MATRIX, F8, I8, INDEX)
+_JUMPS = (MATRIX, CUBE, MATRIX, VECTOR, MATRIX)
 _SCRATCH = (VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX)
 
 
 @njit(inline="always", **OPTIONS)
-def _propagate_root(root, step, k, work):
-    """Propagate the state rows of the root through a step with the derivatives `step` (nx, k + nx)."""
+def _propagate(columns, step, k, work):
+    """Propagate the state rows of columns (k + nx, any) through a step with the derivatives `step` (nx, k + nx)."""
     nx, n = step.shape
     for i in range(nx):
-        for j in range(n):
+        for j in range(columns.shape[1]):
             work[i, j] = 0.0
         for m in range(n):
             a = step[i, m]
             if a != 0.0:
-                for j in range(n):
-                    work[i, j] += a * root[m, j]
+                for j in range(columns.shape[1]):
+                    work[i, j] += a * columns[m, j]
     for i in range(nx):
-        for j in range(n):
-            root[k + i, j] = work[i, j]
+        for j in range(columns.shape[1]):
+            columns[k + i, j] = work[i, j]
 
 
 @njit(inline="always", **OPTIONS)
@@ -135,14 +172,14 @@ def _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, sampl
 @kernel(
     I8(
         *(CUBE, CUBE, CUBE, CUBE, MATRIX, MATRIX, VECTOR),
-        *(*_GAUSSIAN_STATE, *_SAMPLES, MATRIX, *_NOISE, *_FORGETTING, *_SCRATCH, VECTOR, VECTOR),
+        *(*_GAUSSIAN_STATE, *_SAMPLES, MATRIX, *_NOISE, *_FORGETTING, *_JUMPS, *_SCRATCH, VECTOR, VECTOR),
     ),
     **LEAN,
 )
 def filter_linear(
     de, dg, dc, dd, step_matrix, output_matrix, expansion_point, z, root, inputs, measured, first_row, is_run_start,
     slopes, variance, limit, memory, running_means, counts, floor_root, forgetting_factor, forget_every,
-    samples_since, v, z_reference, predicted, h, step, work, w, x
+    samples_since, effects, information, score, seen, moved, v, z_reference, predicted, h, step, work, w, x
 ):  # fmt: skip
     """Process rows first_row.. of an affine model; return the row at which the state left all bounds, or -1.
 
@@ -150,7 +187,8 @@ def filter_linear(
     state, then inputs; their derivatives by the coefficients, last axis: de (nx, nx, k), dg (nx, nw, k), dc (ny, nx,
     k), dd (ny, nu + 1, k). nw = 4 nu + 1: inputs at both ends of the step, their slopes a step at both ends, 1.
     inputs, slopes, measured: a row a sample; is_run_start: 1 where row `first_row` is the first of a run. z and root
-    are those of the row before. variance (ny,) to counts: see `update_sample`; floor_root, forgetting_factor: see
+    are those of the row before. variance (ny,) to counts and effects to seen: see `update_sample`; moved (nx, m k): room
+    for effects; floor_root, forgetting_factor: see
     `forget`, which is done every `forget_every` samples, samples_since counting them.
     """
     k, nx, nu = expansion_point.size, x.size, inputs.shape[1]
@@ -184,7 +222,8 @@ def filter_linear(
                 size += abs(total)
             for i in range(nx):
                 z[k + i] = x[i]
-            _propagate_root(root, step, k, work)
+            _propagate(root, step, k, work)
+            _propagate(effects, step, k, moved)
             if not size < DIVERGED:
                 return row
         for i in range(ny):
@@ -209,7 +248,7 @@ def filter_linear(
         for j in range(z.size):
             z_reference[j] = z[j]
         update_sample(root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts,
-                      v)  # fmt: skip
+                      v, effects, information, score, seen)  # fmt: skip
         _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, samples_since, v)
     return -1
 
@@ -217,7 +256,7 @@ def filter_linear(
 @kernel(
     I8(
         *(TANGENT, TANGENT, F8, I8, VECTOR, INDEX, INDEX),
-        *(*_GAUSSIAN_STATE, *_SAMPLES, *_NOISE, *_FORGETTING, *_SCRATCH),
+        *(*_GAUSSIAN_STATE, *_SAMPLES, *_NOISE, *_FORGETTING, *_JUMPS, *_SCRATCH),
         *(TABLE, TABLE, TABLE, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX, VECTOR),
     ),
     **LEAN,
@@ -225,7 +264,7 @@ def filter_linear(
 def filter_runge_kutta(
     f, g, dt, substeps, p, coefficient_index, select, z, root, inputs, measured, first_row,
     is_run_start, variance, limit, memory, running_means, counts, floor_root, forgetting_factor, forget_every,
-    samples_since, v, z_reference, predicted, h, step, work, chain, direct, link_u, w, s,
+    samples_since, effects, information, score, seen, moved, v, z_reference, predicted, h, step, work, chain, direct, link_u, w, s,
     work_x, work_u, work_w, jac, entries, g_jac, g_value,
 ):  # fmt: skip
     """Process rows of any model by Runge-Kutta steps, inputs running straight between samples, as `sensitivity` has it.
@@ -265,7 +304,8 @@ def filter_runge_kutta(
                 z[k + i] = x[i]
                 for c in range(k + nx):
                     step[i, c] = s[i, c]
-            _propagate_root(root, step, k, work)
+            _propagate(root, step, k, work)
+            _propagate(effects, step, k, moved)
             if not size < DIVERGED:
                 return row
         if g_value.size > 0:
@@ -286,6 +326,45 @@ def filter_runge_kutta(
         for j in range(z.size):
             z_reference[j] = z[j]
         update_sample(root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts,
-                      v)  # fmt: skip
+                      v, effects, information, score, seen)  # fmt: skip
         _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, samples_since, v)
     return -1
+
+
+# Evidence for a jump, whose size has a Gaussian prior.
+
+
+@kernel(void(CUBE, MATRIX, F8, VECTOR), **OPTIONS)
+def jump_evidence(information, score, prior_variance, evidence):
+    """Set the evidence for a jump, nats, at each of m instants: a mixture over its size (Willsky & Jones 1976).
+
+    The jump is of all k coefficients together or of one alone, equally likely, each with this prior variance P:
+    1/2 d' (J + I/P)^-1 d - 1/2 log |I + P J| for information J (k, k) and score d (k,). Nothing, minus infinity, where
+    rounding leaves J + I/P without a root.
+    """
+    instants, k = score.shape
+    root, solved = np.empty((k, k)), np.empty(k)
+    for m in range(instants):
+        of_all, highest, total = 0.0, -math.inf, 0.0
+        for a in range(k):
+            own = 1.0 + prior_variance * max(information[m, a, a], 0.0)
+            alone = 0.5 * prior_variance * score[m, a] ** 2 / own - 0.5 * math.log(own)
+            if alone > highest:
+                total = total * math.exp(highest - alone) + 1.0
+                highest = alone
+            else:
+                total += math.exp(alone - highest)
+            solved[a] = score[m, a]
+            for b in range(a + 1):  # Cholesky by rows, and its solution
+                left = information[m, a, b] + (1.0 / prior_variance if a == b else 0.0)
+                for c in range(b):
+                    left -= root[a, c] * root[b, c]
+                root[a, b] = left / root[b, b] if b < a else math.sqrt(left) if left > 0.0 else math.nan
+                if b < a:
+                    solved[a] -= root[a, b] * solved[b]
+            solved[a] /= root[a, a]
+            of_all += 0.5 * solved[a] ** 2 - math.log(root[a, a]) - 0.5 * math.log(prior_variance)
+        mean_of_each = highest + math.log(total / k)
+        higher, lower = max(of_all, mean_of_each), min(of_all, mean_of_each)
+        both = higher + math.log(0.5 + 0.5 * math.exp(lower - higher))
+        evidence[m] = -math.inf if math.isnan(both) or math.isnan(of_all) else both

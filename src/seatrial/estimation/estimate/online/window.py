@@ -148,11 +148,14 @@ def filter_from_fit(
     *,
     forgetting: Forgetting | None = None,
     guard: DivergenceGuard | None = None,
+    noise_excess: float = 1.0,
+    instants: int = 0,
 ) -> RecursiveFilter:
     """Return the filter that continues after the fit's last sample; `normal` as for `gaussian_state_from_fit`.
 
-    Its noise is the fit's, coloured channels counted as the fit counts them; an innovation is cut where the fit's loss
-    is (`DivergenceGuard` where that is square). See `curvature` for whether the fit is good enough.
+    Its noise is the fit's, coloured channels counted as the fit counts them, of `noise_excess` times the variance; an
+    innovation is cut where the fit's loss is (`DivergenceGuard` where that is square). See `curvature` for whether the
+    fit is good enough, and `RecursiveFilter` for the `instants`.
 
     Raises:
         InputError: the records do not identify every coefficient, or the fit corrects inputs or has a current, which a
@@ -166,17 +169,23 @@ def filter_from_fit(
     if np.isfinite(problem.huber):
         guard = replace(guard, huber_limit=problem.huber)
     first, last = problem.data.offsets[-2:]
+    known = gaussian_state_from_fit(problem, common_parameters, initial_states, normal)
     return RecursiveFilter(
         problem.model,
         problem.free,
         problem.data.outputs,
-        problem.noise * np.sqrt(colour),
+        problem.noise * np.sqrt(noise_excess * colour),
         problem.data.dt,
-        gaussian_state_from_fit(problem, common_parameters, initial_states, normal),
+        replace(
+            known,
+            covariance=noise_excess * known.covariance,
+            state_covariance=noise_excess * known.state_covariance,
+        ),
         recent_inputs=problem.data.inputs[first:last],
         substeps=problem.substeps,
         forgetting=forgetting,
         guard=guard,
+        instants=instants,
     )
 
 
