@@ -170,10 +170,10 @@ class ChangeDetector:
         watch.keep(time)
         return False
 
-    def update_search(self, time: float, now: GaussianEstimate, *, is_white: bool = True) -> bool:
+    def update_search(self, time: float, now: GaussianEstimate, *, is_kept: bool = True) -> bool:
         """Take in a search of all data up to `time` [s], and return whether there is a change since an earlier one.
 
-        is_white: whether its residuals are: later searches are compared with those of a model that fits alone.
+        is_kept: whether later ones are compared with this one, if it knows the coefficients.
         """
         if self.is_ended or not np.all(np.isfinite(now.covariance)):
             return False
@@ -184,7 +184,7 @@ class ChangeDetector:
             if np.max(moves.evidence) > THRESHOLD:
                 self._report(time, [instant for instant, _ in compared], moves)
                 return True
-        if is_white and np.all(np.sqrt(variance) <= _KNOWN * np.abs(now.value)):
+        if is_kept and np.all(np.sqrt(variance) <= _KNOWN * np.abs(now.value)):
             self._searches = (*self._searches, (_Instant(time, now.value, np.sqrt(variance)), now))
         return False
 
@@ -203,14 +203,15 @@ class ChangeDetector:
         """Report the change at the likeliest instant, unless it is that of a ship which changes all the time."""
         nats = moves.evidence
         best = int(np.argmax(nats))
-        near = [one.time for one, each in zip(instants, nats, strict=True) if each >= nats[best] - _SPAN]
+        likely = np.flatnonzero(nats >= nats[best] - _SPAN)
+        times = [*(one.time for one in instants), time]  # a change may be anywhere until the next instant
         errors = np.sqrt(np.abs(np.diagonal(np.linalg.inv(moves.precision[best]))))
         instant, clearest = instants[best], int(np.argmax(np.abs(moves.sizes[best]) / errors))
         before, error_before = (
             dict(zip(self.names, values.tolist(), strict=True)) for values in (instant.value, instant.error)
         )
         change = CoefficientChange(
-            instant.time, (min(near), max(near)), time, float(nats[best]), self.names[clearest], before, error_before
+            instant.time, (times[likely[0]], times[likely[-1] + 1]), time, float(nats[best]), self.names[clearest], before, error_before
         )
         is_soon = self.detected is not None and change.since - self.detected.since < _SOON
         self._in_a_row = self._in_a_row + 1 if is_soon else 1

@@ -527,6 +527,7 @@ class RecursiveFilter:
             self.gaussian_state().at_run_start(np.asarray(state, dtype=np.float64), state_covariance).joint_root()
         )
         self._filter_state.z[len(self.names) :] = state
+        self.jumps.effects[len(self.names) :] = 0.0
         self._buffer = self._open_buffer(None)
 
     def gaussian_state(self) -> GaussianState:

@@ -205,7 +205,9 @@ class OnlineEstimator:
             self.relinearise()
         if isinstance(self._phase, RecursivePhase):
             self._leave_filter(self._phase)
-        self._watch = self._between = None
+        if self._watch is not None:
+            self._watch.begin_run()
+        self._between = None
         self._change_detector.restart()
         if isinstance(self._phase, Window | Carried):  # what the next run is compared with
             self._compare_search(self._phase.estimate)
@@ -294,7 +296,7 @@ class OnlineEstimator:
                 with np.errstate(all="ignore"):  # a trial step may overflow; the search then takes another
                     near = None if self._between is None else self._snapshot.value
                     estimate = self._search.estimate(phase, self._window.records(), near)
-                if self._watch is None and self._compare_search(estimate):
+                if self._compare_search(estimate):
                     self._begin_anew()
                     return
                 self._phase = phase = phase.with_estimate(estimate)
@@ -362,9 +364,10 @@ class OnlineEstimator:
 
     def _leave_filter(self, phase: RecursivePhase) -> None:
         """Go on with a window: with the filter's information, or from nowhere where it has diverged."""
-        self._phase, self._watch = phase.to_window(), None
+        self._phase = phase.to_window()
         self._schedule.restart()
         if isinstance(self._phase, WarmUp):
+            self._watch = None
             self._change_detector.restart()
 
     def _begin_anew(self) -> None:
@@ -396,11 +399,13 @@ class OnlineEstimator:
     def _compare_search(self, estimate: WindowEstimate) -> bool:
         """Compare a search with earlier estimates where successive ones are nested; return whether it shows a change.
 
+        One is kept for comparison where its residuals are white and no filter watches.
+
         They are not while old samples are forgotten, where every search chooses its criterion anew, and where the
         forces of the same waves change as more of their elevation is known.
         """
         is_nested = self._search.is_efficient and self._stream.waves is None and self._stream.forgetting_time_s is None
         now = GaussianEstimate(estimate.value, estimate.noise_excess * estimate.covariance)
         return is_nested and self._change_detector.update_search(
-            self._progress.last_time, now, is_white=not estimate.is_coloured
+            self._progress.last_time, now, is_kept=self._watch is None and not estimate.is_coloured
         )

@@ -28,6 +28,7 @@ from seatrial.estimation.estimate.online.window import (
     cold_start,
     curvature,
     filter_from_fit,
+    last_run,
     refuse_diverging,
     warm_start,
 )
@@ -336,6 +337,7 @@ class SampleMap:
 
 
 _EXACT = 1e-12  # rounding of a conversion
+_ROUGHER = 10.0  # times the motions in a fit's run, with which a new run may begin; chosen: the sea may have grown
 
 
 class RecursivePhase:
@@ -403,6 +405,13 @@ class RecursivePhase:
         if len(self._block) > 1 or self._rows:
             self._process_block()
         self._filter.flush()
+
+    def begin_run(self) -> None:
+        """A new run starts with the next sample, in a state that the run of the fit says little of."""
+        self.finish()
+        fit = self._estimate.estimate
+        states = last_run(fit.problem, fit.common_parameters, fit.optimum.local)[1]
+        self._filter.begin_run(np.mean(states, axis=0), _ROUGHER**2 * np.cov(states, rowvar=False))
 
     def to_window(self) -> Carried | WarmUp:
         """Finish, and return the phase that goes on with a run whose initial state is unknown."""
