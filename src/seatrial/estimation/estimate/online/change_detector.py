@@ -103,11 +103,16 @@ class FilterWatch:
     recursive: RecursiveFilter
     _looks: int = 0
     _kept: dict[int, tuple[int, _Instant]] = field(default_factory=dict)  # by look: place in the filter, and instant
+    _vacant: list[int] = field(init=False)  # places in the filter
+
+    def __post_init__(self) -> None:
+        self._vacant = list(range(len(self.recursive.jumps.score)))
 
     @property
     def is_suspicious(self) -> bool:
         """Whether the evidence for a change at any instant is enough."""
-        return bool(np.max(_Moves(self.recursive.jumps.information, self.recursive.jumps.score).evidence) > THRESHOLD)
+        jumps = self.recursive.jumps
+        return bool(np.max(_Moves(jumps.information, jumps.score).evidence) > THRESHOLD)
 
     def kept(self) -> tuple[list[_Instant], _Moves]:
         """Return the instants that are kept, and what the data say of a change at each."""
@@ -119,12 +124,13 @@ class FilterWatch:
         doublings = (len(self.recursive.jumps.score) - _CLOSE) * 2 // _CLOSE
         for doubling in range(doublings + 1):
             look = self._looks - (_CLOSE << doubling)
-            if doubling == doublings or look % (2 << doubling):
-                self._kept.pop(look, None)
+            if look in self._kept and (doubling == doublings or look % (2 << doubling)):
+                place, _ = self._kept.pop(look)
+                self.recursive.jumps.close(place)
+                self._vacant.append(place)
         value, error = self.recursive.value, self.recursive.standard_error
         if np.all(error <= _KNOWN * np.abs(value)):
-            taken = {place for place, _ in self._kept.values()}
-            place = next(p for p in range(len(self.recursive.jumps.score)) if p not in taken)
+            place = self._vacant.pop()
             self.recursive.jumps.open(place, value)
             self._kept[self._looks] = place, _Instant(time, value, error)
         self._looks += 1

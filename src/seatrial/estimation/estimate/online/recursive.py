@@ -129,9 +129,13 @@ class JumpBank:
     def open(self, place: int, value: Array) -> None:
         """Put the present instant, at which the coefficients are `value` (k,), in the place of another."""
         k = self.score.shape[1]
-        own = self.effects[:, place * k : (place + 1) * k]
-        own[:] = 0.0
-        own[:k] = np.diag(np.where(value == 0.0, 1.0, value))
+        self.close(place)
+        self.effects[:k, place * k : (place + 1) * k] = np.diag(np.where(value == 0.0, 1.0, value))
+
+    def close(self, place: int) -> None:
+        """Look for no jump at the instant in that place any longer: there is no evidence for it."""
+        k = self.score.shape[1]
+        self.effects[:, place * k : (place + 1) * k] = 0.0
         self.information[place], self.score[place] = 0.0, 0.0
 
 

@@ -296,7 +296,7 @@ class OnlineEstimator:
                 with np.errstate(all="ignore"):  # a trial step may overflow; the search then takes another
                     near = None if self._between is None else self._snapshot.value
                     estimate = self._search.estimate(phase, self._window.records(), near)
-                if self._compare_search(estimate):
+                if self._watch is None and self._compare_search(estimate):
                     self._begin_anew()
                     return
                 self._phase = phase = phase.with_estimate(estimate)
@@ -397,9 +397,7 @@ class OnlineEstimator:
             self._snapshot = snapshot_of_now(self._snapshot, self._trial.model, estimate)
 
     def _compare_search(self, estimate: WindowEstimate) -> bool:
-        """Compare a search with earlier estimates where successive ones are nested; return whether it shows a change.
-
-        One is kept for comparison where its residuals are white and no filter watches.
+        """Compare a search with earlier ones where successive ones are nested; return whether it shows a change.
 
         They are not while old samples are forgotten, where every search chooses its criterion anew, and where the
         forces of the same waves change as more of their elevation is known.
@@ -407,5 +405,5 @@ class OnlineEstimator:
         is_nested = self._search.is_efficient and self._stream.waves is None and self._stream.forgetting_time_s is None
         now = GaussianEstimate(estimate.value, estimate.noise_excess * estimate.covariance)
         return is_nested and self._change_detector.update_search(
-            self._progress.last_time, now, is_kept=self._watch is None and not estimate.is_coloured
+            self._progress.last_time, now, is_kept=not estimate.is_coloured
         )
