@@ -7,6 +7,7 @@ from seatrial.numerics.kernels.recursive import (
     forget,
     jump_evidence,
     project_root,
+    resembling,
     update_jumps,
     update_sample,
     update_scalar,
@@ -58,7 +59,7 @@ def taken(root: Array, measured: Array, limit: float = 6.0) -> tuple[Array, Arra
     """z, running and tally after one sample of two channels predicted as 0, variances 1."""
     z, h, running, tally = np.zeros(N), np.eye(2, N), np.zeros((2, 2)), np.zeros((2, 2), dtype=np.int64)
     update_sample(root, z, z.copy(), h, np.zeros(2), measured, np.ones(2), limit, 100.0, running, tally, np.empty(N),
-                  np.empty((N, 0)), np.empty((0, 2, 2)), np.empty((0, 2)), np.empty(0))  # fmt: skip
+                  np.empty((N, 0)), np.empty((0, 2, 2)), np.empty((0, 2)), np.empty(0), np.zeros((2, 4)))  # fmt: skip
     return z, running, tally
 
 
@@ -98,7 +99,7 @@ def test_the_score_of_a_jump_is_that_of_the_innovations_it_would_leave(root: Arr
     for h, y in zip(rows, measured, strict=True):
         v = np.empty(N)
         total = project_root(root, h, v) + 0.09
-        update_jumps(root, h, v, total, y - h @ z, effects, information, score, np.empty(2))
+        update_jumps(root, h, v, total, y - h @ z, 1.0, effects, information, score, np.empty(2))
         update_scalar(root, z, v, total - 0.09, 0.09, y - h @ z)
     covariance = rows @ P @ rows.T + 0.09 * np.eye(30)
     slopes = np.linalg.solve(covariance, rows[:, :2])
@@ -118,3 +119,9 @@ def test_evidence_is_a_mixture_of_all_coefficients_and_of_each_alone(rng: np.ran
         assert evidence[m] == pytest.approx(np.log(0.5 * np.exp(of_all) + 0.5 * np.mean(np.exp(of_each))), rel=1e-10)
     jump_evidence(-1e6 * np.eye(k)[None], d[:1], variance, evidence[:1])
     assert evidence[0] == -np.inf
+
+
+def test_an_innovation_resembles_those_within_a_distance_and_joins_them() -> None:
+    latest = np.array([0.0, 5.0, 5.5, -3.0])
+    assert resembling(latest, 6.0, 1.0) == 2
+    np.testing.assert_array_equal(latest, [6.0, 0.0, 5.0, 5.5])

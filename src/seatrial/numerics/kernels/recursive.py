@@ -49,13 +49,13 @@ def update_scalar(root, z, v, predicted_variance, variance, e):
 
 
 @njit(inline="always", **OPTIONS)
-def update_jumps(root, h, v, total, e, effects, information, score, seen):
+def update_jumps(root, h, v, total, e, weight, effects, information, score, seen):
     """Take in an innovation e of variance `total` = h' P h + r, v = R' h, before `update_scalar` does.
 
     A jump of relative size d at instant m moves the error of z by effects_m d, so that an innovation moves by
     h' effects_m d: score += g e / total, information += g g' / total, g = effects_m' h, and effects_m -= K g', K the
-    gain (Willsky & Jones 1976, IEEE Trans. AC 21, 108, eqs (13) to (18)). effects (n, m k), information (m, k, k),
-    score (m, k), seen (m k,).
+    gain (Willsky & Jones 1976, IEEE Trans. AC 21, 108). weight: 0 where it says nothing of a jump. effects (n, m k),
+    information (m, k, k), score (m, k), seen (m k,).
     """
     k = score.shape[1]
     for c in range(seen.size):
@@ -66,7 +66,7 @@ def update_jumps(root, h, v, total, e, effects, information, score, seen):
                 seen[c] += h[i] * effects[i, c]
     for m in range(score.shape[0]):
         for a in range(k):
-            g = seen[m * k + a] / total
+            g = weight * seen[m * k + a] / total
             score[m, a] += g * e
             for b in range(k):
                 information[m, a, b] += g * seen[m * k + b]
@@ -80,9 +80,20 @@ def update_jumps(root, h, v, total, e, effects, information, score, seen):
 
 
 @njit(inline="always", **OPTIONS)
+def resembling(latest, e, distance):
+    """Return how many of the latest innovations are within a distance of e, which then is the first of them."""
+    near, following = 0, e
+    for lag in range(latest.size):
+        if abs(latest[lag] - e) <= distance:
+            near += 1
+        latest[lag], following = following, latest[lag]
+    return near
+
+
+@njit(inline="always", **OPTIONS)
 def update_sample(
     root, z, z_reference, h, predicted, measured, variance, huber_limit, memory, running_means, counts, v,
-    effects, information, score, seen,
+    effects, information, score, seen, latest,
 ):  # fmt: skip
     """Update by all channels of one sample, NaN being no measurement.
 
@@ -90,6 +101,7 @@ def update_sample(
     counts linearly (Huber 1964): its variance is raised as far as its weight falls, and what moves z ends at the limit.
     running_means (ny, 2): over the latest `memory` of the squared innovation, by its variance and plain, cut at the
     limit; counts (2, ny). effects to seen: see `update_jumps`, no columns where no jump is looked for.
+    latest (ny, 4): innovations before; one beyond the limit that fewer than two of them resemble is no jump's.
     """
     n = z.size
     for channel in range(variance.size):
@@ -109,11 +121,13 @@ def update_sample(
         weight = 1.0 / min(counts[USED, channel] * 1.0, memory)
         running_means[channel, 0] += weight * ((cut * size) ** 2 - running_means[channel, 0])
         running_means[channel, 1] += weight * ((cut * e) ** 2 - running_means[channel, 1])
+        near = resembling(latest[channel], e, huber_limit * math.sqrt(spread + r))
+        tells = 1.0 if cut == 1.0 or near >= 2 else 0.0
         r /= cut
         most = huber_limit * math.sqrt(spread + r)
         e = min(max(e, -most), most)
         if seen.size > 0:
-            update_jumps(root, h[channel], v, spread + r, e, effects, information, score, seen)
+            update_jumps(root, h[channel], v, spread + r, e, tells, effects, information, score, seen)
         update_scalar(root, z, v, spread, r, e)
 
 
@@ -140,7 +154,7 @@ _GAUSSIAN_STATE = (VECTOR, MATRIX)
 _SAMPLES = (MATRIX, MATRIX, I8, I8)
 _NOISE = (VECTOR, F8, F8, MATRIX, TABLE)
 _FORGETTING = (MATRIX, F8, I8, INDEX)
-_JUMPS = (MATRIX, CUBE, MATRIX, VECTOR, MATRIX)
+_JUMPS = (MATRIX, CUBE, MATRIX, VECTOR, MATRIX, MATRIX)
 _SCRATCH = (VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX)
 
 
@@ -179,7 +193,7 @@ def _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, sampl
 def filter_linear(
     de, dg, dc, dd, step_matrix, output_matrix, expansion_point, z, root, inputs, measured, first_row, is_run_start,
     slopes, variance, limit, memory, running_means, counts, floor_root, forgetting_factor, forget_every,
-    samples_since, effects, information, score, seen, moved, v, z_reference, predicted, h, step, work, w, x
+    samples_since, effects, information, score, seen, latest, moved, v, z_reference, predicted, h, step, work, w, x
 ):  # fmt: skip
     """Process rows first_row.. of an affine model; return the row at which the state left all bounds, or -1.
 
@@ -187,9 +201,9 @@ def filter_linear(
     state, then inputs; their derivatives by the coefficients, last axis: de (nx, nx, k), dg (nx, nw, k), dc (ny, nx,
     k), dd (ny, nu + 1, k). nw = 4 nu + 1: inputs at both ends of the step, their slopes a step at both ends, 1.
     inputs, slopes, measured: a row a sample; is_run_start: 1 where row `first_row` is the first of a run. z and root
-    are those of the row before. variance (ny,) to counts and effects to seen: see `update_sample`; moved (nx, m k): room
-    for effects; floor_root, forgetting_factor: see
-    `forget`, which is done every `forget_every` samples, samples_since counting them.
+    are those of the row before. variance (ny,) to counts and effects to latest: see `update_sample`; moved (nx, m k):
+    room for effects; floor_root, forgetting_factor: see `forget`, which is done every `forget_every` samples,
+    samples_since counting them.
     """
     k, nx, nu = expansion_point.size, x.size, inputs.shape[1]
     ny = variance.size
@@ -248,7 +262,7 @@ def filter_linear(
         for j in range(z.size):
             z_reference[j] = z[j]
         update_sample(root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts,
-                      v, effects, information, score, seen)  # fmt: skip
+                      v, effects, information, score, seen, latest)  # fmt: skip
         _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, samples_since, v)
     return -1
 
@@ -264,8 +278,8 @@ def filter_linear(
 def filter_runge_kutta(
     f, g, dt, substeps, p, coefficient_index, select, z, root, inputs, measured, first_row,
     is_run_start, variance, limit, memory, running_means, counts, floor_root, forgetting_factor, forget_every,
-    samples_since, effects, information, score, seen, moved, v, z_reference, predicted, h, step, work, chain, direct, link_u, w, s,
-    work_x, work_u, work_w, jac, entries, g_jac, g_value,
+    samples_since, effects, information, score, seen, latest, moved, v, z_reference, predicted, h, step, work, chain,
+    direct, link_u, w, s, work_x, work_u, work_w, jac, entries, g_jac, g_value,
 ):  # fmt: skip
     """Process rows of any model by Runge-Kutta steps, inputs running straight between samples, as `sensitivity` has it.
 
@@ -326,7 +340,7 @@ def filter_runge_kutta(
         for j in range(z.size):
             z_reference[j] = z[j]
         update_sample(root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts,
-                      v, effects, information, score, seen)  # fmt: skip
+                      v, effects, information, score, seen, latest)  # fmt: skip
         _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, samples_since, v)
     return -1
 

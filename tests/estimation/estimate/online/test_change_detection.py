@@ -103,6 +103,14 @@ def test_thirty_streams_without_change_raise_no_alarm(beam: SeaStream) -> None:
     assert not any(alarms(beam, beam.measured(100 + k)) for k in range(30))
 
 
+def test_spikes_of_a_sensor_are_no_change(beam: SeaStream) -> None:
+    """One in a hundred samples is 20 standard deviations off."""
+    for seed in range(10):
+        rng, measured = np.random.default_rng([seed, 4]), beam.measured(200 + seed)
+        measured[FIRST:] += 20.0 * NOISE * (rng.random(measured[FIRST:].shape) < 0.01) * rng.choice([-1.0, 1.0], 2)
+        assert not alarms(beam, measured)
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_a_loaded_ship_is_told_within_seconds(beam: SeaStream, seed: int) -> None:
     """Mass and inertia grow by 10 % at 135 s."""

@@ -216,8 +216,9 @@ class ChangeDetector:
         before, error_before = (
             dict(zip(self.names, values.tolist(), strict=True)) for values in (instant.value, instant.error)
         )
+        between = times[likely[0]], times[likely[-1] + 1]
         change = CoefficientChange(
-            instant.time, (times[likely[0]], times[likely[-1] + 1]), time, float(nats[best]), self.names[clearest], before, error_before
+            instant.time, between, time, float(nats[best]), self.names[clearest], before, error_before
         )
         is_soon = self.detected is not None and change.since - self.detected.since < _SOON
         self._in_a_row = self._in_a_row + 1 if is_soon else 1

@@ -100,31 +100,33 @@ class JumpBank:
         effects: of a jump on the error of [coefficients | state], (k + nx, m k).
         information: on its size, (m, k, k); score: (m, k), information times the likeliest size.
         innovation_effects, propagated: room for `kernels.recursive`, (m k,) and (nx, m k).
+        latest: innovations of each channel, (ny, 4).
     """
 
     effects: Array
     information: Array
     score: Array
     innovation_effects: Array
+    latest: Array
     propagated: Array
 
     @classmethod
-    def of_size(cls, instants: int, coefficients: int, states: int) -> Self:
+    def of_size(cls, instants: int, coefficients: int, states: int, outputs: int) -> Self:
         """Return a bank of so many instants, at none of which a jump is looked for yet."""
         m, k, width = instants, coefficients, instants * coefficients
         return cls(
             np.zeros((k + states, width)), np.zeros((m, k, k)), np.zeros((m, k)), np.zeros(width),
-            np.zeros((states, width)),
+            np.zeros((outputs, 4)), np.zeros((states, width)),
         )  # fmt: skip
 
     @property
-    def arrays(self) -> tuple[Array, Array, Array, Array, Array]:
+    def arrays(self) -> tuple[Array, Array, Array, Array, Array, Array]:
         """All of them, as the kernels take them."""
-        return self.effects, self.information, self.score, self.innovation_effects, self.propagated
+        return self.effects, self.information, self.score, self.innovation_effects, self.latest, self.propagated
 
     def emptied(self) -> Self:
         """Return a bank of no instant."""
-        return self.of_size(0, self.score.shape[1], len(self.propagated))
+        return self.of_size(0, self.score.shape[1], len(self.propagated), len(self.latest))
 
     def open(self, place: int, value: Array) -> None:
         """Put the present instant, at which the coefficients are `value` (k,), in the place of another."""
@@ -461,7 +463,7 @@ class RecursiveFilter:
         self._stepper = stepper_for(model, self.names, self.outputs, dt, substeps)
         bounds = [model.parameters[n] for n in self.names]
         self._lower, self._upper = np.array([b.lower for b in bounds]), np.array([b.upper for b in bounds])
-        self.jumps = JumpBank.of_size(instants, len(self.names), len(model.states))
+        self.jumps = JumpBank.of_size(instants, len(self.names), len(model.states), len(self.outputs))
         self._look_ahead = 0 if instants else self._stepper.look_ahead
         self._filter_state = _initial_filter_state(
             initial, np.asarray(noise, dtype=np.float64), dt, self._guard, forgetting or Forgetting(), self.jumps

@@ -103,7 +103,9 @@ def curvature(problem: OutputError, common_parameters: Array, initial_states: Ar
 # From a fit to a filter: what an output-error fit knows at its last sample, and the filter that goes on from there.
 
 
-def last_run(problem: OutputError, common_parameters: Array, initial_states: Array) -> tuple[SegmentBatch, Array, Array]:
+def last_run(
+    problem: OutputError, common_parameters: Array, initial_states: Array
+) -> tuple[SegmentBatch, Array, Array]:
     """Return a fit's last run with all states as outputs: (rows, nx), and their slopes, (rows, nx, unknowns)."""
     model, data = problem.model, problem.data
     first, last = data.offsets[-2:]
