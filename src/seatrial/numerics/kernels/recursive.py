@@ -11,6 +11,10 @@ from seatrial.numerics.kernels.simd import LANES
 
 # A Gaussian estimate kept as a square root: covariance P = R R', R square, not triangular.
 
+ALIKE = 2
+"""Of the four innovations before one beyond the limit, at least, that are near it, or it is a spike: with it they are
+most of five (chosen)."""
+
 # what `update_sample` counts, by channel: measurements used, outliers among them
 USED, OUTLIERS = 0, 1
 
@@ -49,34 +53,34 @@ def update_scalar(root, z, v, predicted_variance, variance, e):
 
 
 @njit(inline="always", **OPTIONS)
-def update_jumps(root, h, v, total, e, weight, effects, information, score, seen):
+def update_jumps(root, h, v, total, e, weight, effects, information, score, innovation_effects):
     """Take in an innovation e of variance `total` = h' P h + r, v = R' h, before `update_scalar` does.
 
     A jump of relative size d at instant m moves the error of z by effects_m d, so that an innovation moves by
     h' effects_m d: score += g e / total, information += g g' / total, g = effects_m' h, and effects_m -= K g', K the
     gain (Willsky & Jones 1976, IEEE Trans. AC 21, 108). weight: 0 where it says nothing of a jump. effects (n, m k),
-    information (m, k, k), score (m, k), seen (m k,).
+    information (m, k, k), score (m, k), innovation_effects (m k,).
     """
     k = score.shape[1]
-    for c in range(seen.size):
-        seen[c] = 0.0
+    for c in range(innovation_effects.size):
+        innovation_effects[c] = 0.0
     for i in range(h.size):
         if h[i] != 0.0:
-            for c in range(seen.size):
-                seen[c] += h[i] * effects[i, c]
+            for c in range(innovation_effects.size):
+                innovation_effects[c] += h[i] * effects[i, c]
     for m in range(score.shape[0]):
         for a in range(k):
-            g = weight * seen[m * k + a] / total
+            g = weight * innovation_effects[m * k + a] / total
             score[m, a] += g * e
             for b in range(k):
-                information[m, a, b] += g * seen[m * k + b]
+                information[m, a, b] += g * innovation_effects[m * k + b]
     for i in range(h.size):
         gain = 0.0
         for j in range(h.size):
             gain += root[i, j] * v[j]
         gain /= total
-        for c in range(seen.size):
-            effects[i, c] -= gain * seen[c]
+        for c in range(innovation_effects.size):
+            effects[i, c] -= gain * innovation_effects[c]
 
 
 @njit(inline="always", **OPTIONS)
@@ -93,15 +97,15 @@ def resembling(latest, e, distance):
 @njit(inline="always", **OPTIONS)
 def update_sample(
     root, z, z_reference, h, predicted, measured, variance, huber_limit, memory, running_means, counts, v,
-    effects, information, score, seen, latest,
+    effects, information, score, innovation_effects, latest,
 ):  # fmt: skip
     """Update by all channels of one sample, NaN being no measurement.
 
     h (ny, n), predicted (ny,): slopes and values at z_reference. An innovation beyond `huber_limit` standard deviations
     counts linearly (Huber 1964): its variance is raised as far as its weight falls, and what moves z ends at the limit.
     running_means (ny, 2): over the latest `memory` of the squared innovation, by its variance and plain, cut at the
-    limit; counts (2, ny). effects to seen: see `update_jumps`, no columns where no jump is looked for.
-    latest (ny, 4): innovations before; one beyond the limit that fewer than two of them resemble is no jump's.
+    limit; counts (2, ny). effects to innovation_effects: see `update_jumps`, no columns where no jump is looked for.
+    latest (ny, 4): innovations before; one beyond the limit that fewer than `ALIKE` of them resemble is no jump's.
     """
     n = z.size
     for channel in range(variance.size):
@@ -122,12 +126,12 @@ def update_sample(
         running_means[channel, 0] += weight * ((cut * size) ** 2 - running_means[channel, 0])
         running_means[channel, 1] += weight * ((cut * e) ** 2 - running_means[channel, 1])
         near = resembling(latest[channel], e, huber_limit * math.sqrt(spread + r))
-        tells = 1.0 if cut == 1.0 or near >= 2 else 0.0
+        tells = 1.0 if cut == 1.0 or near >= ALIKE else 0.0
         r /= cut
         most = huber_limit * math.sqrt(spread + r)
         e = min(max(e, -most), most)
-        if seen.size > 0:
-            update_jumps(root, h[channel], v, spread + r, e, tells, effects, information, score, seen)
+        if innovation_effects.size > 0:
+            update_jumps(root, h[channel], v, spread + r, e, tells, effects, information, score, innovation_effects)
         update_scalar(root, z, v, spread, r, e)
 
 
@@ -193,7 +197,8 @@ def _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, sampl
 def filter_linear(
     de, dg, dc, dd, step_matrix, output_matrix, expansion_point, z, root, inputs, measured, first_row, is_run_start,
     slopes, variance, limit, memory, running_means, counts, floor_root, forgetting_factor, forget_every,
-    samples_since, effects, information, score, seen, latest, moved, v, z_reference, predicted, h, step, work, w, x
+    samples_since, effects, information, score, innovation_effects, latest, moved, v, z_reference, predicted, h, step,
+    work, w, x,
 ):  # fmt: skip
     """Process rows first_row.. of an affine model; return the row at which the state left all bounds, or -1.
 
@@ -262,7 +267,7 @@ def filter_linear(
         for j in range(z.size):
             z_reference[j] = z[j]
         update_sample(root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts,
-                      v, effects, information, score, seen, latest)  # fmt: skip
+                      v, effects, information, score, innovation_effects, latest)  # fmt: skip
         _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, samples_since, v)
     return -1
 
@@ -278,8 +283,8 @@ def filter_linear(
 def filter_runge_kutta(
     f, g, dt, substeps, p, coefficient_index, select, z, root, inputs, measured, first_row,
     is_run_start, variance, limit, memory, running_means, counts, floor_root, forgetting_factor, forget_every,
-    samples_since, effects, information, score, seen, latest, moved, v, z_reference, predicted, h, step, work, chain,
-    direct, link_u, w, s, work_x, work_u, work_w, jac, entries, g_jac, g_value,
+    samples_since, effects, information, score, innovation_effects, latest, moved, v, z_reference, predicted, h, step,
+    work, chain, direct, link_u, w, s, work_x, work_u, work_w, jac, entries, g_jac, g_value,
 ):  # fmt: skip
     """Process rows of any model by Runge-Kutta steps, inputs running straight between samples, as `sensitivity` has it.
 
@@ -340,7 +345,7 @@ def filter_runge_kutta(
         for j in range(z.size):
             z_reference[j] = z[j]
         update_sample(root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts,
-                      v, effects, information, score, seen, latest)  # fmt: skip
+                      v, effects, information, score, innovation_effects, latest)  # fmt: skip
         _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, samples_since, v)
     return -1
 
@@ -361,8 +366,8 @@ def jump_evidence(information, score, prior_variance, evidence):
     for m in range(instants):
         of_all, highest, total = 0.0, -math.inf, 0.0
         for a in range(k):
-            own = 1.0 + prior_variance * max(information[m, a, a], 0.0)
-            alone = 0.5 * prior_variance * score[m, a] ** 2 / own - 0.5 * math.log(own)
+            growth = 1.0 + prior_variance * max(information[m, a, a], 0.0)
+            alone = 0.5 * prior_variance * score[m, a] ** 2 / growth - 0.5 * math.log(growth)
             if alone > highest:
                 total = total * math.exp(highest - alone) + 1.0
                 highest = alone
@@ -370,15 +375,15 @@ def jump_evidence(information, score, prior_variance, evidence):
                 total += math.exp(alone - highest)
             solved[a] = score[m, a]
             for b in range(a + 1):  # Cholesky by rows, and its solution
-                left = information[m, a, b] + (1.0 / prior_variance if a == b else 0.0)
+                pivot = information[m, a, b] + (1.0 / prior_variance if a == b else 0.0)
                 for c in range(b):
-                    left -= root[a, c] * root[b, c]
-                root[a, b] = left / root[b, b] if b < a else math.sqrt(left) if left > 0.0 else math.nan
+                    pivot -= root[a, c] * root[b, c]
+                root[a, b] = pivot / root[b, b] if b < a else math.sqrt(pivot) if pivot > 0.0 else math.nan
                 if b < a:
                     solved[a] -= root[a, b] * solved[b]
             solved[a] /= root[a, a]
             of_all += 0.5 * solved[a] ** 2 - math.log(root[a, a]) - 0.5 * math.log(prior_variance)
         mean_of_each = highest + math.log(total / k)
         higher, lower = max(of_all, mean_of_each), min(of_all, mean_of_each)
-        both = higher + math.log(0.5 + 0.5 * math.exp(lower - higher))
-        evidence[m] = -math.inf if math.isnan(both) or math.isnan(of_all) else both
+        mixture = higher + math.log(0.5 + 0.5 * math.exp(lower - higher))
+        evidence[m] = -math.inf if math.isnan(mixture) or math.isnan(of_all) else mixture
