@@ -50,10 +50,11 @@ class SeaStream:
         found = levenberg_marquardt(problem, problem.start(), problem.measured_initial_states(), negligible=1e-9)
         return gaussian_state_from_fit(problem, found.solution.point, found.local, found.normal)
 
-    def filter(self, belief: GaussianState, rows: int, forgetting: Forgetting | None = None) -> RecursiveFilter:
+    def filter(self, belief: GaussianState, rows: int, forgetting: Forgetting | None = None,
+               instants: int = 0) -> RecursiveFilter:  # fmt: skip
         """A filter that goes on after the first rows."""
         return RecursiveFilter(self.ship, NAMES, OUTPUTS, NOISE, DT, belief, recent_inputs=self.clean.inputs[:rows],
-                         forgetting=forgetting)  # fmt: skip
+                         forgetting=forgetting, instants=instants)  # fmt: skip
 
     def run_filter(self, recursive: RecursiveFilter, measured: Array, rows: int, block: int = 10) -> RecursiveFilter:
         """The filter after everything behind the first rows."""

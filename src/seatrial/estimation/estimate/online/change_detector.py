@@ -1,13 +1,14 @@
-"""Whether and when a ship has changed: a bank of instants, each with what was known of the coefficients there."""
+"""Whether and when a ship has changed: a bank of instants, and what the data since say of a change at each."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.special import logsumexp
 
 from seatrial.core.results.online import CoefficientChange
 from seatrial.core.values import Array
+from seatrial.estimation.estimate.online.recursive import RecursiveFilter
+from seatrial.numerics.kernels.recursive import jump_evidence
 
 # What the data after an instant say against those before it.
 
@@ -61,51 +62,91 @@ class _Moves:
 
     @property
     def evidence(self) -> Array:
-        """Evidence for a change at each instant, nats, (m,); nothing where rounding leaves none.
-
-        The size has a Gaussian prior, of all coefficients together or of one alone, equally likely (mixture over the
-        size: Willsky & Jones 1976).
-        """
-        of_all = 0.5 * np.einsum("mi,mi->m", self.score, self.sizes)
-        of_all -= 0.5 * np.linalg.slogdet(SIZE**2 * self.precision)[1]
-        alone = 1.0 + SIZE**2 * np.maximum(np.einsum("mii->mi", self.information), 0.0)
-        of_each = 0.5 * SIZE**2 * self.score**2 / alone - 0.5 * np.log(alone)
-        mean_of_each = logsumexp(of_each, axis=1) - np.log(self.score.shape[1])
-        return np.nan_to_num(np.logaddexp(of_all, mean_of_each) - np.log(2.0), nan=-np.inf)
+        """Evidence for a change at each instant, nats, (m,), see `jump_evidence`."""
+        evidence = np.empty(len(self.score))
+        jump_evidence(self.information, self.score, SIZE**2, evidence)
+        return evidence
 
 
-# The bank: instants close to the present one by one, older ones ever farther apart.
+# Instants at which the ship may have changed: those of a filter's samples, and those of searches.
 
-_CLOSE = 8  # looks up to whose age every instant is kept; of twice the age every second, and so on; chosen
-_OLDEST = 400.0  # s, age of the oldest instant; chosen: what takes longer to show is no jump
+
+@dataclass(frozen=True, eq=False)
+class _Instant:
+    """A time [s], and value and standard error of the coefficients there, (k,)."""
+
+    time: float
+    value: Array
+    error: Array
+
+
+# the bank of a filter: instants close to the present sample by sample, older ones ever farther apart
+_CLOSE = 8  # samples up to whose age every instant is kept; of twice the age every second, and so on; chosen
+_OLDEST = 400.0  # s, age of the oldest instant at least; chosen: what takes longer to show is no jump
 _KNOWN = 0.15  # relative standard error of every coefficient from which on an instant is kept; chosen
-_APART = (
-    0.8  # of an instant's variances, to which a search's have to fall to be compared with it: a search and a filter
-)
-# agree to a seventh of a standard error, chosen
+
+
+def bank_size(rate: float) -> int:
+    """Return how many instants are kept at so many samples a second."""
+    doublings = max(int(np.ceil(np.log2(_OLDEST * rate / _CLOSE))), 0)
+    return _CLOSE + doublings * _CLOSE // 2
+
+
+@dataclass(eq=False)
+class FilterWatch:
+    """Instants of a filter whose jumps of the coefficients are looked for.
+
+    Attributes:
+        recursive: the filter, with places for `bank_size` of them.
+    """
+
+    recursive: RecursiveFilter
+    _looks: int = 0
+    _kept: dict[int, tuple[int, _Instant]] = field(default_factory=dict)  # by look: place in the filter, and instant
+    _vacant: list[int] = field(init=False)  # places in the filter
+
+    def __post_init__(self) -> None:
+        self._vacant = list(range(len(self.recursive.jumps.score)))
+
+    @property
+    def is_suspicious(self) -> bool:
+        """Whether the evidence for a change at any instant is enough."""
+        jumps = self.recursive.jumps
+        return bool(np.max(_Moves(jumps.information, jumps.score).evidence) > THRESHOLD)
+
+    def kept(self) -> tuple[list[_Instant], _Moves]:
+        """Return the instants that are kept, and what the data say of a change at each."""
+        places, jumps = [place for place, _ in self._kept.values()], self.recursive.jumps
+        return [one for _, one in self._kept.values()], _Moves(jumps.information[places], jumps.score[places])
+
+    def keep(self, time: float) -> None:
+        """Keep the latest sample, at `time` [s], where the coefficients are known, and drop older ones."""
+        doublings = (len(self.recursive.jumps.score) - _CLOSE) * 2 // _CLOSE
+        for doubling in range(doublings + 1):
+            look = self._looks - (_CLOSE << doubling)
+            if look in self._kept and (doubling == doublings or look % (2 << doubling)):
+                place, _ = self._kept.pop(look)
+                self.recursive.jumps.close(place)
+                self._vacant.append(place)
+        value, error = self.recursive.value, self.recursive.standard_error
+        if np.all(error <= _KNOWN * np.abs(value)):
+            place = self._vacant.pop()
+            self.recursive.jumps.open(place, value)
+            self._kept[self._looks] = place, _Instant(time, value, error)
+        self._looks += 1
+
+
+# What is reported of both, and until when.
+
+_APART = 0.8  # of an earlier search's variances, to which another's have to fall to be compared with it; chosen
 _SOON, _MOST_IN_A_ROW = 60.0, 3  # s between changes that count as in a row, and how many a ship makes; chosen: a ramp
 # of a minute is found in three
 _SPAN = 3.0  # nats below the likeliest instant down to which another is inside its interval: half of chi squared, 99 %
 
 
-@dataclass(frozen=True, eq=False)
-class _Instant:
-    """A look: its number, its time [s], the estimate there, and whether a search gave it."""
-
-    number: int
-    time: float
-    estimate: GaussianEstimate
-    is_searched: bool
-
-    def can_be_compared(self, now: GaussianEstimate, *, is_searched: bool) -> bool:
-        """Whether one filter made both estimates, or what came since is more than that by which others differ."""
-        variances = (np.diagonal(one.covariance) for one in (now, self.estimate))
-        return not (self.is_searched or is_searched) or bool(np.all(np.divide(*variances) <= _APART))
-
-
 @dataclass(eq=False)
 class ChangeDetector:
-    """Compare an estimate that grows with what it was at a bank of earlier instants.
+    """Look for changes of the coefficients in a filter that takes in every sample, or else between searches.
 
     Attributes:
         names: of the coefficients.
@@ -114,8 +155,7 @@ class ChangeDetector:
 
     names: tuple[str, ...]
     detected: CoefficientChange | None = None
-    _bank: tuple[_Instant, ...] = ()
-    _looks: int = 0
+    _searches: tuple[tuple[_Instant, GaussianEstimate], ...] = ()
     _in_a_row: int = 0
 
     @property
@@ -123,56 +163,64 @@ class ChangeDetector:
         """Whether changes followed one another so closely that none is looked for any longer."""
         return self._in_a_row > _MOST_IN_A_ROW
 
-    def update(self, time: float, now: GaussianEstimate, *, is_white: bool = True, is_searched: bool = False) -> bool:
-        """Take in the estimate from all data up to `time` [s], and return whether there is a change.
+    def update(self, time: float, watch: FilterWatch) -> bool:
+        """Take in what a filter made of the sample at `time` [s], and return whether there is a change.
 
-        It empties the bank: the estimate is to begin anew.
+        The estimate is then to begin anew, and so is the watch.
+        """
+        if self.is_ended:
+            return False
+        if watch.is_suspicious:
+            self._report(time, *watch.kept())
+            return True
+        watch.keep(time)
+        return False
 
-        Args:
-            is_white: whether its residuals are: later estimates are compared with those of a model that fits alone.
-            is_searched: by a search, not by the filter that goes on.
+    def update_search(self, time: float, now: GaussianEstimate, *, is_kept: bool = True) -> bool:
+        """Take in a search of all data up to `time` [s], and return whether there is a change since an earlier one.
+
+        is_kept: whether later ones are compared with this one, if it knows the coefficients.
         """
         if self.is_ended or not np.all(np.isfinite(now.covariance)):
             return False
-        self._bank = tuple(one for one in self._bank if self._is_kept(one, time))
-        compared = [one for one in self._bank if one.can_be_compared(now, is_searched=is_searched)]
-        moves = _Moves.since([one.estimate for one in compared], now) if compared else None
-        if moves is not None and np.max(moves.evidence) > THRESHOLD:
-            change = self._change(time, compared, moves)
-            is_soon = self.detected is not None and change.since - self.detected.since < _SOON
-            self._in_a_row = self._in_a_row + 1 if is_soon else 1
-            self.detected = replace(change, is_believed=not self.is_ended)
-            self.restart()
-            return True
-        if is_white and np.all(np.sqrt(np.diagonal(now.covariance)) <= _KNOWN * np.abs(now.value)):
-            self._bank = (*self._bank, _Instant(self._looks, time, now, is_searched))
-        self._looks += 1
+        variance = np.diagonal(now.covariance)
+        compared = [s for s in self._searches if np.all(variance <= _APART * np.diagonal(s[1].covariance))]
+        if compared:
+            moves = _Moves.since([estimate for _, estimate in compared], now)
+            if np.max(moves.evidence) > THRESHOLD:
+                self._report(time, [instant for instant, _ in compared], moves)
+                return True
+        if is_kept and np.all(np.sqrt(variance) <= _KNOWN * np.abs(now.value)):
+            self._searches = (*self._searches, (_Instant(time, now.value, np.sqrt(variance)), now))
         return False
 
     def doubt(self, since: float) -> None:
-        """Forget all instants; a change closely before `since` [s], from where residuals are coloured, is withdrawn."""
+        """Forget all searches; a change closely before `since` [s], from where residuals are coloured, is withdrawn."""
         change = self.detected
         if change is not None and change.is_believed and since - change.reported_at < _SOON:
             self.detected = replace(change, is_believed=False)
         self.restart()
 
     def restart(self) -> None:
-        """Forget all instants: the estimate begins anew, or counts data anew."""
-        self._bank = ()
+        """Forget all searches: the estimate begins anew, or counts data anew."""
+        self._searches = ()
 
-    def _is_kept(self, one: _Instant, time: float) -> bool:
-        every = 1 << ((self._looks - one.number) // _CLOSE).bit_length()
-        return one.is_searched or (time - one.time <= _OLDEST and one.number % every == 0)
-
-    def _change(self, time: float, compared: Sequence[_Instant], moves: _Moves) -> CoefficientChange:
-        """The change at the likeliest instant."""
+    def _report(self, time: float, instants: Sequence[_Instant], moves: _Moves) -> None:
+        """Report the change at the likeliest instant, unless it is that of a ship which changes all the time."""
         nats = moves.evidence
         best = int(np.argmax(nats))
-        near = [one.time for one, each in zip(compared, nats, strict=True) if each >= nats[best] - _SPAN]
+        likely = np.flatnonzero(nats >= nats[best] - _SPAN)
+        times = [*(one.time for one in instants), time]  # a change may be anywhere until the next instant
         errors = np.sqrt(np.abs(np.diagonal(np.linalg.inv(moves.precision[best]))))
-        instant, clearest = compared[best], int(np.argmax(np.abs(moves.sizes[best]) / errors))
-        earlier = (instant.estimate.value, np.sqrt(np.diagonal(instant.estimate.covariance)))
-        before, error_before = (dict(zip(self.names, values.tolist(), strict=True)) for values in earlier)
-        return CoefficientChange(
-            instant.time, (min(near), max(near)), time, float(nats[best]), self.names[clearest], before, error_before
+        instant, clearest = instants[best], int(np.argmax(np.abs(moves.sizes[best]) / errors))
+        before, error_before = (
+            dict(zip(self.names, values.tolist(), strict=True)) for values in (instant.value, instant.error)
         )
+        between = times[likely[0]], times[likely[-1] + 1]
+        change = CoefficientChange(
+            instant.time, between, time, float(nats[best]), self.names[clearest], before, error_before
+        )
+        is_soon = self.detected is not None and change.since - self.detected.since < _SOON
+        self._in_a_row = self._in_a_row + 1 if is_soon else 1
+        self.detected = replace(change, is_believed=not self.is_ended)
+        self.restart()

@@ -91,6 +91,57 @@ _Linearisation = tuple[Array, Array, Array, Array, Array, Array, Array]
 
 
 @dataclass(frozen=True, eq=False)
+class JumpBank:
+    """What the data since each of m instants say of a jump of the k coefficients there, changed in place.
+
+    The state, of nx, goes on from its value there. Sizes are relative to the coefficients of the instant.
+
+    Attributes:
+        effects: of a jump on the error of [coefficients | state], (k + nx, m k).
+        information: on its size, (m, k, k); score: (m, k), information times the likeliest size.
+        innovation_effects, propagated: room for `kernels.recursive`, (m k,) and (nx, m k).
+        latest: innovations of each channel, (ny, 4).
+    """
+
+    effects: Array
+    information: Array
+    score: Array
+    innovation_effects: Array
+    latest: Array
+    propagated: Array
+
+    @classmethod
+    def of_size(cls, instants: int, coefficients: int, states: int, outputs: int) -> Self:
+        """Return a bank of so many instants, at none of which a jump is looked for yet."""
+        m, k, width = instants, coefficients, instants * coefficients
+        return cls(
+            np.zeros((k + states, width)), np.zeros((m, k, k)), np.zeros((m, k)), np.zeros(width),
+            np.zeros((outputs, 4)), np.zeros((states, width)),
+        )  # fmt: skip
+
+    @property
+    def arrays(self) -> tuple[Array, Array, Array, Array, Array, Array]:
+        """All of them, as the kernels take them."""
+        return self.effects, self.information, self.score, self.innovation_effects, self.latest, self.propagated
+
+    def emptied(self) -> Self:
+        """Return a bank of no instant."""
+        return self.of_size(0, self.score.shape[1], len(self.propagated), len(self.latest))
+
+    def open(self, place: int, value: Array) -> None:
+        """Put the present instant, at which the coefficients are `value` (k,), in the place of another."""
+        k = self.score.shape[1]
+        self.close(place)
+        self.effects[:k, place * k : (place + 1) * k] = np.diag(np.where(value == 0.0, 1.0, value))
+
+    def close(self, place: int) -> None:
+        """Look for no jump at the instant in that place any longer: there is no evidence for it."""
+        k = self.score.shape[1]
+        self.effects[:, place * k : (place + 1) * k] = 0.0
+        self.information[place], self.score[place] = 0.0, 0.0
+
+
+@dataclass(frozen=True, eq=False)
 class FilterState:
     """What is carried along, changed in place: z (n,) = [coefficients | state], root (n, n) of its covariance.
 
@@ -99,6 +150,7 @@ class FilterState:
         running_means, counts: (ny, 2) and (2, ny), see `kernels.square_root.take`.
         huber_limit, averaging_samples: in standard deviations, in samples.
         widest_precision, retained_share, forgetting_interval, since_forgetting: see `forget`.
+        jumps: of the coefficients, that are looked for.
     """
 
     z: Array
@@ -112,13 +164,14 @@ class FilterState:
     retained_share: float
     forgetting_interval: int
     since_forgetting: Index
+    jumps: JumpBank
 
     def copy(self) -> "FilterState":
-        """Return the same, to be carried on by itself."""
+        """Return the same, to be carried on by itself, in which no jump is looked for."""
         return FilterState(
             self.z.copy(), self.root.copy(), self.variance, self.huber_limit, self.averaging_samples,
             self.running_means.copy(), self.counts.copy(), self.widest_precision, self.retained_share,
-            self.forgetting_interval, self.since_forgetting.copy(),
+            self.forgetting_interval, self.since_forgetting.copy(), self.jumps.emptied(),
         )  # fmt: skip
 
 
@@ -177,7 +230,7 @@ class RungeKuttaStepper:
             first, is_run_start, filter_state.variance, filter_state.huber_limit, filter_state.averaging_samples,
             filter_state.running_means, filter_state.counts, filter_state.widest_precision,
             filter_state.retained_share, filter_state.forgetting_interval, filter_state.since_forgetting,
-            *self._scratch_arrays,
+            *filter_state.jumps.arrays, *self._scratch_arrays,
         )  # fmt: skip
 
 
@@ -227,7 +280,7 @@ class ExactStepper:
                 filter_state.variance, filter_state.huber_limit, filter_state.averaging_samples,
                 filter_state.running_means, filter_state.counts, filter_state.widest_precision,
                 filter_state.retained_share, filter_state.forgetting_interval, filter_state.since_forgetting,
-                *self._scratch_arrays,
+                *filter_state.jumps.arrays, *self._scratch_arrays,
             )  # fmt: skip
             if failed >= 0:
                 return failed
@@ -379,6 +432,7 @@ class RecursiveFilter:
         substeps: int = 1,
         forgetting: Forgetting | None = None,
         guard: DivergenceGuard | None = None,
+        instants: int = 0,
     ) -> None:
         """Carry `belief` on.
 
@@ -389,6 +443,8 @@ class RecursiveFilter:
             dt: s between samples.
             recent: the run's latest inputs up to the present sample, (m, nu), m >= 1, in the model's signs, a dozen if
                 there are. None: the belief stands before a run's first sample, which comes next.
+            instants: most at which jumps of the coefficients are looked for; then no sample waits for later ones, and
+                a smooth input's last slope is of earlier ones alone.
 
         Raises:
             InputError: names the model does not have, or shapes that do not agree.
@@ -407,8 +463,10 @@ class RecursiveFilter:
         self._stepper = stepper_for(model, self.names, self.outputs, dt, substeps)
         bounds = [model.parameters[n] for n in self.names]
         self._lower, self._upper = np.array([b.lower for b in bounds]), np.array([b.upper for b in bounds])
+        self.jumps = JumpBank.of_size(instants, len(self.names), len(model.states), len(self.outputs))
+        self._look_ahead = 0 if instants else self._stepper.look_ahead
         self._filter_state = _initial_filter_state(
-            initial, np.asarray(noise, dtype=np.float64), dt, self._guard, forgetting or Forgetting()
+            initial, np.asarray(noise, dtype=np.float64), dt, self._guard, forgetting or Forgetting(), self.jumps
         )
         self._buffer = self._open_buffer(recent_inputs)
 
@@ -438,7 +496,7 @@ class RecursiveFilter:
             )
         w.inputs = np.concatenate([w.inputs, inputs])
         w.measured = np.concatenate([w.measured, measured])
-        self._process(len(w.inputs) - self._stepper.look_ahead)
+        self._process(len(w.inputs) - self._look_ahead)
 
     def estimate_with(self, measured: Array, inputs: Array) -> tuple[Array, Array]:
         """Return coefficients (k,) and covariance (k, k) as they would be with the samples that wait and these.
@@ -475,6 +533,7 @@ class RecursiveFilter:
             self.gaussian_state().at_run_start(np.asarray(state, dtype=np.float64), state_covariance).joint_root()
         )
         self._filter_state.z[len(self.names) :] = state
+        self.jumps.effects[len(self.names) :] = 0.0
         self._buffer = self._open_buffer(None)
 
     def gaussian_state(self) -> GaussianState:
@@ -540,7 +599,7 @@ class RecursiveFilter:
 
 
 def _initial_filter_state(
-    initial: GaussianState, noise: Array, dt: float, guard: DivergenceGuard, forgetting: Forgetting
+    initial: GaussianState, noise: Array, dt: float, guard: DivergenceGuard, forgetting: Forgetting, jumps: JumpBank
 ) -> FilterState:
     k, nx, ny = len(initial.value), len(initial.state), len(noise)
     kept, every, widest = 1.0, 1, np.zeros((0, k + nx))
@@ -563,4 +622,5 @@ def _initial_filter_state(
         kept,
         every,
         np.zeros(1, dtype=np.int64),
+        jumps,
     )

@@ -17,7 +17,7 @@ from seatrial.estimation.information.covariance import inverse
 from seatrial.estimation.information.whiteness import whiteness_p
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.numerics.optimise import NormalEquations, levenberg_marquardt
-from seatrial.physics.simulate.batch import batch_class
+from seatrial.physics.simulate.batch import SegmentBatch, batch_class
 
 # Rows of a run that grows.
 
@@ -102,6 +102,21 @@ def curvature(problem: OutputError, common_parameters: Array, initial_states: Ar
 # From a fit to a filter: what an output-error fit knows at its last sample, and the filter that goes on from there.
 
 
+def last_run(
+    problem: OutputError, common_parameters: Array, initial_states: Array
+) -> tuple[SegmentBatch, Array, Array]:
+    """Return a fit's last run with all states as outputs: (rows, nx), and their slopes, (rows, nx, unknowns)."""
+    model, data = problem.model, problem.data
+    first, last = data.offsets[-2:]
+    start, values, corrections = problem.unpack(common_parameters, initial_states)
+    batch = batch_class(model)(
+        model, np.ascontiguousarray(data.inputs[first:last]), np.array([0, last - first]), data.dt, model.states,
+        problem.free, tuple(n.correction for n in problem.nuisances), problem.starts, problem.substeps,
+    )  # fmt: skip
+    states, slopes, _ = batch.differentiate(0, 1, start[-1:], values[-1:], corrections[-1:])
+    return batch, states, slopes
+
+
 def gaussian_state_from_fit(
     problem: OutputError, common_parameters: Array, initial_states: Array, normal: NormalEquations
 ) -> GaussianState:
@@ -112,7 +127,7 @@ def gaussian_state_from_fit(
     Raises:
         InputError: the records do not identify every coefficient.
     """
-    model, data, k = problem.model, problem.data, len(problem.free)
+    k = len(problem.free)
     information = normal.without_local()[1]
     scale = np.sqrt(np.maximum(np.diagonal(information), 1e-300))  # above zero, for a division
     scaled = information / np.outer(scale, scale)
@@ -120,13 +135,7 @@ def gaussian_state_from_fit(
     if not np.all(np.isfinite(scaled)) or np.linalg.eigvalsh(scaled)[0] < 1e-13:
         raise InputError("the records so far do not identify every coefficient; keep the window until they do")
     covariance = (np.linalg.inv(scaled) / np.outer(scale, scale))[:k, :k]
-    first, last = data.offsets[-2:]
-    start, values, corrections = problem.unpack(common_parameters, initial_states)
-    batch = batch_class(model)(
-        model, np.ascontiguousarray(data.inputs[first:last]), np.array([0, last - first]), data.dt, model.states,
-        problem.free, tuple(n.correction for n in problem.nuisances), problem.starts, problem.substeps,
-    )  # fmt: skip
-    y, slopes, _ = batch.differentiate(0, 1, start[-1:], values[-1:], corrections[-1:])
+    batch, y, slopes = last_run(problem, common_parameters, initial_states)
     by_start = slopes[-1, :, len(batch.parameters) + len(batch.corrections) :]
     of_start = np.linalg.pinv(normal.local_hessian[-1], hermitian=True)
     moved = -of_start @ normal.cross[-1, :k].T
@@ -148,11 +157,14 @@ def filter_from_fit(
     *,
     forgetting: Forgetting | None = None,
     guard: DivergenceGuard | None = None,
+    noise_excess: float = 1.0,
+    instants: int = 0,
 ) -> RecursiveFilter:
     """Return the filter that continues after the fit's last sample; `normal` as for `gaussian_state_from_fit`.
 
-    Its noise is the fit's, coloured channels counted as the fit counts them; an innovation is cut where the fit's loss
-    is (`DivergenceGuard` where that is square). See `curvature` for whether the fit is good enough.
+    Its noise is the fit's, coloured channels counted as the fit counts them, of `noise_excess` times the variance; an
+    innovation is cut where the fit's loss is (`DivergenceGuard` where that is square). See `curvature` for whether the
+    fit is good enough, and `RecursiveFilter` for the `instants`.
 
     Raises:
         InputError: the records do not identify every coefficient, or the fit corrects inputs or has a current, which a
@@ -166,17 +178,23 @@ def filter_from_fit(
     if np.isfinite(problem.huber):
         guard = replace(guard, huber_limit=problem.huber)
     first, last = problem.data.offsets[-2:]
+    known = gaussian_state_from_fit(problem, common_parameters, initial_states, normal)
     return RecursiveFilter(
         problem.model,
         problem.free,
         problem.data.outputs,
-        problem.noise * np.sqrt(colour),
+        problem.noise * np.sqrt(noise_excess * colour),
         problem.data.dt,
-        gaussian_state_from_fit(problem, common_parameters, initial_states, normal),
+        replace(
+            known,
+            covariance=noise_excess * known.covariance,
+            state_covariance=noise_excess * known.state_covariance,
+        ),
         recent_inputs=problem.data.inputs[first:last],
         substeps=problem.substeps,
         forgetting=forgetting,
         guard=guard,
+        instants=instants,
     )
 
 

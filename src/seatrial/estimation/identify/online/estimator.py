@@ -170,7 +170,7 @@ _NO_MODEL_YET = "the samples so far lead to no model that can be simulated"
 class OnlineEstimator:
     """Feed with `update`; the same samples give the same bits. No threads, no files.
 
-    A trial's own training runs come first and stay in the window. Beside a window a filter watches for a change of the
+    A trial's own training runs come first and stay in the window. Beside it a filter watches for a change of the
     coefficients, behind which the estimate begins anew.
 
     Raises:
@@ -184,10 +184,9 @@ class OnlineEstimator:
         self._search: WindowSearch = ContinuedSearch(trial, self._schedule) if is_continued else RepeatedSearch(trial)
         self._window = StreamWindow(trial)
         self._change_detector = ChangeDetector(trial.model.parameters.free_names)
-        self._watch: RecursivePhase | None = None  # since the first search, so that all that it knows is of one filter
+        self._watch: RecursivePhase | None = None  # for changes, since the first search
         self._between: RecursivePhase | None = None  # since the last search, for what is shown until the next
         self._is_curved = False  # the model, within the standard errors of the last search
-        self._noise_excess = 1.0  # of the residuals' variance over the declared, where the watch began
         self._coloured_since = np.inf  # s, the first of the searches in a row whose residuals are coloured
         self._phase: KeptPhase | RecursivePhase = WarmUp()
         self._progress = StreamProgress()
@@ -206,7 +205,9 @@ class OnlineEstimator:
             self.relinearise()
         if isinstance(self._phase, RecursivePhase):
             self._leave_filter(self._phase)
-        self._watch = self._between = None
+        if self._watch is not None:
+            self._watch.begin_run()
+        self._between = None
         self._change_detector.restart()
         if isinstance(self._phase, Window | Carried):  # what the next run is compared with
             self._compare_search(self._phase.estimate)
@@ -227,7 +228,7 @@ class OnlineEstimator:
             self._window.add(sample)
             if self._between is not None:
                 self._show_sample(self._between, sample)
-            if self._watch is not None and self._compare_sample(self._watch, sample):
+            if self._is_changed_at(sample):
                 self._begin_anew()
             elif self._is_search_due() and self._window.open_samples >= MIN_RUN_SAMPLES:
                 self.relinearise()
@@ -303,7 +304,7 @@ class OnlineEstimator:
                 self._between = self._filter_behind(estimate)
                 self._is_curved = self._between is None and self._is_young(estimate)
                 if self._watch is None:
-                    self._watch, self._noise_excess = self._filter_behind(estimate), estimate.noise_excess
+                    self._watch = self._filter_behind(estimate, is_watching=True)
                 self._note_colour(is_coloured=estimate.is_coloured and self._search.is_efficient)
             except (InputError, np.linalg.LinAlgError) as error:
                 if isinstance(phase, WarmUp):
@@ -330,11 +331,12 @@ class OnlineEstimator:
         is_shown = bool(np.all(error < _SHOWN * np.abs(estimate.value)))
         return is_shown and self._search.is_efficient and self._window.seconds < _YOUNG
 
-    def _filter_behind(self, estimate: WindowEstimate) -> RecursivePhase | None:
+    def _filter_behind(self, estimate: WindowEstimate, *, is_watching: bool = False) -> RecursivePhase | None:
         """A filter behind a search, where one can take over."""
         if not self._search.is_efficient or estimate.is_coloured:
             return None
-        return filter_phase(estimate, self._stream, self._trial.reference_point, self._between)
+        at = self._trial.reference_point
+        return filter_phase(estimate, self._stream, at, self._between, is_watching=is_watching)
 
     def _leave_window(self, phase: Window | Carried) -> None:
         """Go on with a filter where one can take over, else with the window's information."""
@@ -345,7 +347,7 @@ class OnlineEstimator:
             is_efficient = self._search.is_efficient
             following = carried_phase(phase, self._window.seconds, self._stream, is_efficient=is_efficient)
             self._schedule.note_search(0.0, is_carried=True)
-        self._watch = self._between = None
+        self._between = None
         self._change_detector.restart()
         self._phase = following
         self._window.clear()
@@ -355,7 +357,7 @@ class OnlineEstimator:
         is_look_due = phase.add(sample.time, sample.values)
         if is_look_due and not phase.is_sound:
             self._leave_filter(phase)
-        elif is_look_due and self._compare_filter(phase):
+        elif self._is_changed_at(sample):
             self._begin_anew()
         else:
             self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, phase)
@@ -365,6 +367,7 @@ class OnlineEstimator:
         self._phase = phase.to_window()
         self._schedule.restart()
         if isinstance(self._phase, WarmUp):
+            self._watch = None
             self._change_detector.restart()
 
     def _begin_anew(self) -> None:
@@ -375,13 +378,13 @@ class OnlineEstimator:
         self._schedule.restart()
         self._snapshot = first_snapshot(self._trial.model, self._change_detector.detected)
 
-    def _compare_sample(self, watch: RecursivePhase, sample: Sample) -> bool:
-        """Take a sample into the filter beside the window, and return whether it shows a change."""
-        if not watch.add(sample.time, sample.values):
+    def _is_changed_at(self, sample: Sample) -> bool:
+        """Take a sample into the filter that watches, and return whether it shows a change."""
+        if self._watch is None or not self._watch.add(sample.time, sample.values):
             return False
-        if watch.is_sound:
-            return self._compare_filter(watch)
-        self._watch = None  # the next search is compared with what it saw
+        if self._watch.is_sound:
+            return self._change_detector.update(sample.time, self._watch.watch)
+        self._watch = None  # the next search is compared with earlier ones
         return False
 
     def _show_sample(self, between: RecursivePhase, sample: Sample) -> None:
@@ -393,20 +396,14 @@ class OnlineEstimator:
         if estimate is not None:
             self._snapshot = snapshot_of_now(self._snapshot, self._trial.model, estimate)
 
-    def _compare_filter(self, phase: RecursivePhase) -> bool:
-        """Compare a filter's estimate with earlier ones, and return whether it shows a change."""
-        known = phase.of_all_samples
-        now = GaussianEstimate(known.value, self._noise_excess * known.covariance)
-        return self._change_detector.update(self._progress.last_time, now)
-
     def _compare_search(self, estimate: WindowEstimate) -> bool:
-        """Compare a search with earlier estimates where successive ones are nested; return whether it shows a change.
+        """Compare a search with earlier ones where successive ones are nested; return whether it shows a change.
 
         They are not while old samples are forgotten, where every search chooses its criterion anew, and where the
         forces of the same waves change as more of their elevation is known.
         """
         is_nested = self._search.is_efficient and self._stream.waves is None and self._stream.forgetting_time_s is None
         now = GaussianEstimate(estimate.value, estimate.noise_excess * estimate.covariance)
-        return is_nested and self._change_detector.update(
-            self._progress.last_time, now, is_white=not estimate.is_coloured, is_searched=True
+        return is_nested and self._change_detector.update_search(
+            self._progress.last_time, now, is_kept=not estimate.is_coloured
         )

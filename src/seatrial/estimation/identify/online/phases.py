@@ -17,7 +17,7 @@ from seatrial.data.trial import FitCriterion, Trial, with_input_corners
 from seatrial.data.trial.settings import Stream
 from seatrial.estimation.estimate.assemble import MarginalPrior, Runs, marginalise
 from seatrial.estimation.estimate.fit import estimate_model, with_segment_seconds
-from seatrial.estimation.estimate.online.change_detector import GaussianEstimate
+from seatrial.estimation.estimate.online.change_detector import FilterWatch, GaussianEstimate, bank_size
 from seatrial.estimation.estimate.online.recursive import Forgetting
 from seatrial.estimation.estimate.online.window import (
     LINEAR_ENOUGH,
@@ -27,6 +27,7 @@ from seatrial.estimation.estimate.online.window import (
     cold_start,
     curvature,
     filter_from_fit,
+    last_run,
     refuse_diverging,
     warm_start,
 )
@@ -335,15 +336,16 @@ class SampleMap:
 
 
 _EXACT = 1e-12  # rounding of a conversion
+_ROUGHER = 10.0  # times the motions in a fit's run, with which a new run may begin; chosen: the sea may have grown
 
 
 class RecursivePhase:
     """Goes on behind the last sample of a fit.
 
-    Where samples are forgotten, a second filter that forgets nothing says what all of them do.
-
     Attributes:
         bend: of the model within one standard error of the fit, see `curvature`.
+        watch: for changes of the coefficients, if this is a filter that watches: it forgets nothing, its noise is that
+            of the fit's residuals, and it takes in samples one by one.
 
     Raises:
         InputError: the fit is too curved or does not identify every coefficient, waves come from an elevation, or
@@ -351,7 +353,13 @@ class RecursivePhase:
     """
 
     def __init__(
-        self, estimate: WindowEstimate, stream: Stream, reference_point: float, before: Self | None = None
+        self,
+        estimate: WindowEstimate,
+        stream: Stream,
+        reference_point: float,
+        before: Self | None = None,
+        *,
+        is_watching: bool = False,
     ) -> None:
         fit = estimate.estimate
         optimum = (fit.problem, fit.common_parameters, fit.optimum.local, fit.optimum.normal)
@@ -366,14 +374,19 @@ class RecursivePhase:
         self._estimate, self._stream, self._reference_point = estimate, stream, reference_point
         widest = tuple(float(v) for v in np.maximum(np.abs(estimate.value), _scales(estimate)))
         forgetting = None if stream.forgetting_time_s is None else Forgetting(stream.forgetting_time_s, widest)
-        self._filter = filter_from_fit(*optimum, forgetting=forgetting)
-        self._unforgetting_filter = self._filter if forgetting is None else filter_from_fit(*optimum)
+        if is_watching:
+            size = bank_size(stream.rate)
+            self._filter = filter_from_fit(*optimum, noise_excess=estimate.noise_excess, instants=size)
+        else:
+            self._filter = filter_from_fit(*optimum, forgetting=forgetting)
+        self.watch = FilterWatch(self._filter)
         self._model, self._outputs = fit.problem.model, fit.problem.data.outputs
         columns = len(stream.layout.columns)
         self._block, self._rows = SampleRows(columns), list[Array]()
         self._last_inputs = np.zeros(len(self._model.inputs))
         # a heading turns on and on, so that a sample of it needs those before
         self._map = None if self._model.has_heading else SampleMap.of_stream(self._converted, columns)
+        self._block_samples = 1 if is_watching and self._map is not None else BLOCK_SAMPLES
 
     def add(self, time: float, values: Array) -> bool:
         """Take in one sample, and return whether a block of them has been processed."""
@@ -381,7 +394,7 @@ class RecursivePhase:
             self._block.add(time, values)
         else:
             self._rows.append(self._filled(self._map.apply(values)))
-        if len(self._block) + len(self._rows) < BLOCK_SAMPLES:
+        if len(self._block) + len(self._rows) < self._block_samples:
             return False
         self._process_block()
         return True
@@ -391,8 +404,13 @@ class RecursivePhase:
         if len(self._block) > 1 or self._rows:
             self._process_block()
         self._filter.flush()
-        if self._unforgetting_filter is not self._filter:
-            self._unforgetting_filter.flush()
+
+    def begin_run(self) -> None:
+        """A new run starts with the next sample, in a state that the run of the fit says little of."""
+        self.finish()
+        fit = self._estimate.estimate
+        states = last_run(fit.problem, fit.common_parameters, fit.optimum.local)[1]
+        self._filter.begin_run(np.mean(states, axis=0), _ROUGHER**2 * np.cov(states, rowvar=False))
 
     def to_window(self) -> Carried | WarmUp:
         """Finish, and return the phase that goes on with a run whose initial state is unknown."""
@@ -431,11 +449,6 @@ class RecursivePhase:
         """Rms of the innovations over the last half minute, SI, by channel."""
         return dict(zip(self._outputs, self._filter.innovations.rms.tolist(), strict=True))
 
-    @property
-    def of_all_samples(self) -> GaussianEstimate:
-        """The estimate in which no sample is forgotten."""
-        return GaussianEstimate(self._unforgetting_filter.value, self._unforgetting_filter.covariance)
-
     def _process_block(self) -> None:
         if self._map is None:
             block, self._block = self._block, SampleRows(self._block.values.shape[1])
@@ -444,8 +457,6 @@ class RecursivePhase:
             rows, self._rows = self._rows, []
         measured, inputs = self._split(np.array(rows))
         self._filter.update(measured, inputs)
-        if self._unforgetting_filter is not self._filter:
-            self._unforgetting_filter.update(measured, inputs)
 
     def _split(self, rows: Array) -> tuple[Array, Array]:
         """Outputs and inputs of rows (n, nu + ny)."""
@@ -499,14 +510,19 @@ def is_window_full(phase: KeptPhase, seconds: float, stream: Stream, intervals: 
 
 
 def filter_phase(
-    estimate: WindowEstimate, stream: Stream, reference_point: float, before: RecursivePhase | None = None
+    estimate: WindowEstimate,
+    stream: Stream,
+    reference_point: float,
+    before: RecursivePhase | None = None,
+    *,
+    is_watching: bool = False,
 ) -> RecursivePhase | None:
     """Return the filter that goes on behind the estimate; None where it cannot take over.
 
     before: the filter behind the last search of the same samples.
     """
     try:
-        return RecursivePhase(estimate, stream, reference_point, before)
+        return RecursivePhase(estimate, stream, reference_point, before, is_watching=is_watching)
     except InputError:
         return None
 
