@@ -163,7 +163,7 @@ def _after_draft(draft: "DraftTrial", out: Path) -> str:
     steps += [f"put the length of the craft after 'L =' in {out} (init --length does)"] if draft.lacks_length else []
     if draft.lacks_heading and (heading := draft.column_like_heading):
         rudder = draft.column_like_rudder if draft.lacks_input else ""
-        kinds = "the heading or the rudder: if two are" if rudder else "the heading: if one is"
+        kinds = "the heading or the rudder: if these are" if rudder else "the heading: if one is"
         stated = [f"{heading}=psi", *([f"{rudder}=delta"] if rudder else [])]
         options = " ".join(f"--column {in_shell(one)}" for one in stated)
         return f"no column is recognised as {kinds}, the same command with --overwrite {options}"

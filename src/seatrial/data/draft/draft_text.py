@@ -299,12 +299,10 @@ def _sensor_lines(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[
         return ["[sensors]", 'velocity = "ground"    # as the positions change, over ground: a current is in them', ""]
     if not _is_over_ground(guesses) or not (model.has_thrusters or model.has_forces_of_a_ship):
         return []
-    return [
-        "[sensors]",
-        'velocity = "ground"    # of a receiver, over ground: a current is in them',
-        'compass = "offset"    # what turned them ahead and aside: its zero is estimated',
-        "",
-    ]
+    zero = 'compass = "offset"    # what turned them ahead and aside: several courses tell its zero from a current'
+    is_told = model.water is not None and model.water.shows_current
+    receiver = 'velocity = "ground"    # of a receiver, over ground: a current is in them'
+    return ["[sensors]", receiver, *([zero] if is_told else []), ""]
 
 
 def _offset_lines(
