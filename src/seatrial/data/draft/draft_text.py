@@ -299,10 +299,10 @@ def _sensor_lines(model: StartingModel, guesses: Sequence[ColumnGuess]) -> list[
         return ["[sensors]", 'velocity = "ground"    # as the positions change, over ground: a current is in them', ""]
     if not _is_over_ground(guesses) or not (model.has_thrusters or model.has_forces_of_a_ship):
         return []
-    zero = 'compass = "offset"    # what turned them ahead and aside: several courses tell its zero from a current'
-    is_told = model.water is not None and model.water.shows_current
+    zero = 'compass = "offset"    # what turned them ahead and aside: several courses separate its zero from a current'
+    shows_zero = model.water is not None and model.water.shows_current
     receiver = 'velocity = "ground"    # of a receiver, over ground: a current is in them'
-    return ["[sensors]", receiver, *([zero] if is_told else []), ""]
+    return ["[sensors]", receiver, *([zero] if shows_zero else []), ""]
 
 
 def _offset_lines(
