@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from seatrial.physics.models.heave_pitch import heave_pitch_zoh
 from seatrial.physics.models.waterjet import waterjet
+from seatrial.physics.sensors import Compass, Sensors, VelocityReference, with_sensors
 from seatrial.physics.simulate.batch import InputCorrection, SegmentBatch
 from seatrial.physics.simulate.filtering import FilterPoint, KalmanFilter, corrected_inputs
 from seatrial.physics.simulate.linear import LinearBatch
@@ -76,3 +77,57 @@ def test_corrections_have_their_derivatives(inputs: Array) -> None:
         for kind in range(3):
             expected = (sides[0][kind] - sides[1][kind])[:, j] / 2e-7
             np.testing.assert_allclose(weights[:, 3 * j + kind], expected, atol=1e-6)
+
+
+def _turned_by_the_heading() -> KalmanFilter:
+    """Return a filter of a craft whose velocities over ground were turned by a compass with a zero of its own."""
+    model = with_sensors(waterjet(), Sensors(compass=Compass.OFFSET, velocity=VelocityReference.GROUND))
+    observed = tuple(model.observable_of(c) for c in ("u", "v", "r", "psi"))
+    inputs = np.stack([0.3 * np.sin(np.arange(ROWS) / 5.0), np.full(ROWS, 1.866)], axis=1)
+    return KalmanFilter(
+        model, inputs, np.array([0, ROWS]), DT, observed, ("N_r", "compass_A"), driven=("v", "r"),
+    )  # fmt: skip
+
+
+def _point(run: KalmanFilter, **changed: float) -> FilterPoint:
+    model = run.model.with_values({"compass_A": 0.02} | changed)
+    start, variance = np.array([[0.9, 0.1, 0.05, 0.4, 0.0, 0.0]]), np.array([[0.2, 0.1, 0.05, 0.01, 1.0, 1.0]]) ** 2
+    return FilterPoint(
+        start, variance, model.parameters.values[None], np.zeros((1, 0)), np.array([0.02, 0.01]),
+        np.array([0.04, 0.05, 0.01, 0.005]),
+    )  # fmt: skip
+
+
+def test_a_heading_s_error_counts_once_where_velocities_were_turned_by_it() -> None:
+    """The first sample's likelihood: that of a normal distribution whose noise is correlated as the turn makes it."""
+    run = _turned_by_the_heading()
+    at = _point(run)
+    reading = np.array([0.95, 0.15, 0.04, 0.39])
+    e, v, _ = run.innovations(0, np.vstack([reading, np.full((ROWS - 1, 4), np.nan)]), at)
+    loss = 0.5 * np.sum(e[0] ** 2 / v[0] + np.log(v[0]))
+
+    y, s, _ = SegmentBatch(
+        run.model, run.inputs, run.offsets, DT, run.outputs, initial_states=run.model.states
+    ).differentiate(0, 1, at.start, at.parameters, at.corrections)
+    sensors = np.diag(at.deviation**2)
+    back = np.eye(4)  # readings behind the turn by those before it: u gains v e, v loses u e
+    back[0, 3], back[1, 3] = reading[1], -reading[0]
+    covariance = s[0] @ np.diag(at.start_variance[0]) @ s[0].T + back @ sensors @ back.T
+    misfit = reading - y[0]
+    expected = 0.5 * (misfit @ np.linalg.solve(covariance, misfit) + np.linalg.slogdet(covariance)[1])
+    assert loss == pytest.approx(expected, rel=1e-9)
+
+
+def test_slopes_of_a_sample_that_a_heading_turned(rng: np.random.Generator) -> None:
+    """By a coefficient of a craft without process noise, whose gain no coefficient moves at the first samples."""
+    run = replace(_turned_by_the_heading(), driven=())
+    at = replace(_point(run), start_variance=np.zeros((1, 6)), intensity=np.zeros(0))
+    measured = run.simulate(0, 1, at.start, at.parameters, at.corrections)[0] + 0.01 * rng.standard_normal((ROWS, 4))
+    _, _, de, _, _ = run.sensitivities(0, measured, at)
+    for column, name in enumerate(run.parameters):
+        value, step = run.model.with_values({"compass_A": 0.02}).parameters[name].value, 1e-5
+        sides = [
+            run.innovations(0, measured, replace(at, parameters=_point(run, **{name: value + k * step}).parameters))[0]
+            for k in (1, -1)
+        ]
+        np.testing.assert_allclose(de[..., column], (sides[0] - sides[1]) / (2 * step), rtol=1e-5, atol=1e-6)

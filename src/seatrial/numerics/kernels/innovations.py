@@ -9,6 +9,11 @@ Behind the craft's states stand pairs of states of first-order wave motion, a di
 show on top of the craft's own motion. They are linear and apart from the craft, so that each has its exact block of
 two, whatever the time step.
 
+A channel may have been turned by the reading of another, as velocities over ground are by the heading shown: the error
+of that reading is then in both. Such a sample is taken together with a multiple of the other channel's, in which the
+error cancels; the determinant of this change of samples is 1 (a noise of full covariance made diagonal; Bierman 1977,
+section III.3), so that the likelihood is that of the samples themselves.
+
 Sensitivities: of the mean by every column, of the covariance by the noise columns. By the other columns the covariance
 counts as constant (gain frozen), which neglects terms of zero mean (Ljung 1999, section 10.2; Astrom 1980, section 5).
 """
@@ -154,7 +159,7 @@ def turn_waves(x, s, nx, pairs, first, size, peaks):
     I8(
         *(TANGENT, TANGENT, MATRIX, MATRIX, VECTOR, F8, I8, VECTOR, VECTOR, VECTOR),
         *(TABLE, TABLE, TABLE, TABLE, TABLE, INDEX, INDEX, VECTOR, VECTOR, MATRIX),
-        *(MATRIX, VECTOR, TABLE),
+        *(MATRIX, VECTOR, TABLE, I8, MATRIX),
         *(MATRIX, MATRIX, CUBE, CUBE, MATRIX, MATRIX),
         *(MATRIX, CUBE, MATRIX, MATRIX, MATRIX, MATRIX, VECTOR, CUBE, MATRIX, MATRIX, INDEX),
     ),
@@ -163,7 +168,7 @@ def turn_waves(x, s, nx, pairs, first, size, peaks):
 def _filter_innovations(
     f, g, inputs, weights, rise, dt, substeps, x0, variance0, p,
     chain, link_p, link_u, g_link_p, g_link_u, select, noisy_states, process, measurement, measured,
-    pairs, size, wave_states, e_out, v_out, de_out, dv_out, variance_out, state_out,
+    pairs, size, wave_states, turned_by, turning, e_out, v_out, de_out, dv_out, variance_out, state_out,
     work_x, work_s, work_u, work_w, jac, g_jac, g_value, covariance, work, covariance_times_h, places,
 ):  # fmt: skip
     nx, ny, rows, peaks = x0.size, select.size, measured.shape[0], wave_states.shape[1]
@@ -188,7 +193,6 @@ def _filter_innovations(
                 ahead[i] = x[i]
         magnitude = 0.0
         for channel in range(ny):
-            here = select[channel] - nx
             if math.isnan(measured[row, channel]):
                 e_out[row, channel], v_out[row, channel] = 0.0, 1.0
                 for c in range(width):
@@ -196,17 +200,22 @@ def _filter_innovations(
                 for m in range(1, covs):
                     dv_out[row, channel, m - 1] = 0.0
                 continue
-            e, v = measured[row, channel], measurement[channel]
-            count = 0
-            if here < 0:
-                e -= x[here + nx]
-                places[0], h[0], count = here + nx, 1.0, 1
-            else:
-                e -= g_value[here]
+            e, v = 0.0, measurement[channel]
+            count, terms = 0, 1 if turning[row, channel] == 0.0 else 2
+            for term in range(terms):
+                other, factor = (channel, 1.0) if term == 0 else (turned_by, turning[row, channel])
+                here = select[other] - nx
+                e += factor * measured[row, other]
+                if here < 0:
+                    e -= factor * x[here + nx]
+                    places[count], h[count] = here + nx, factor
+                    count += 1
+                    continue
+                e -= factor * g_value[here]
                 for i in range(nx):
                     if g_jac[here, i] != 0.0:
-                        e -= g_jac[here, i] * (x[i] - ahead[i])
-                        places[count], h[count] = i, g_jac[here, i]
+                        e -= factor * g_jac[here, i] * (x[i] - ahead[i])
+                        places[count], h[count] = i, factor * g_jac[here, i]
                         count += 1
             for peak in range(peaks):
                 if wave_states[channel, peak] >= 0:
@@ -233,14 +242,18 @@ def _filter_innovations(
                 for a in range(count):
                     total -= h[a] * s[places[a], nx + c]
                 de_out[row, channel, c] = total
-            if here >= 0:
+            for term in range(terms):
+                other, factor = (channel, 1.0) if term == 0 else (turned_by, turning[row, channel])
+                here = select[other] - nx
+                if here < 0:
+                    continue
                 for m in range(g_link_p.shape[0]):
                     if g_link_p[m, 0] == here:
-                        de_out[row, channel, g_link_p[m, 2] - nx] -= g_jac[here, g_link_p[m, 1]]
+                        de_out[row, channel, g_link_p[m, 2] - nx] -= factor * g_jac[here, g_link_p[m, 1]]
                 for m in range(g_link_u.shape[0]):
                     if g_link_u[m, 0] == here:
                         de_out[row, channel, g_link_u[m, 3] - nx] -= (
-                            g_jac[here, g_link_u[m, 1]] * weights[row, g_link_u[m, 2]]
+                            factor * g_jac[here, g_link_u[m, 1]] * weights[row, g_link_u[m, 2]]
                         )
             for i in range(n):
                 x[i] += gain[i] * e
@@ -307,7 +320,7 @@ def _filter_innovations(
 def filter_innovations(
     f, g, inputs, weights, rise, dt, substeps, x0, variance0, p,
     chain, link_p, link_u, g_link_p, g_link_u, select, ng, noisy_states, process, measurement, measured,
-    pairs, size, wave_states, e_out, v_out, de_out, dv_out, variance_out, state_out,
+    pairs, size, wave_states, turned_by, turning, e_out, v_out, de_out, dv_out, variance_out, state_out,
 ):  # fmt: skip
     """Filter one run: innovations e_out (measured - predicted) and their variances v_out, (rows, ny).
 
@@ -315,22 +328,25 @@ def filter_innovations(
 
     inputs (rows, nu), corrected; weights (rows, 3 nu), their derivatives by offset, gain and delay, or (rows, 0) where
     no column needs them; rise (nu,): 1 for inputs that run straight from sample to sample, 0 for those that are held;
-    x0, variance0 (nx,): mean and variance of the initial state. process: variance a second of each state's white
-    noise, (nx,); measurement: variance of each channel, (ny,). Waves: pairs (k, 22), the same number of each peak, peak
-    after peak; size (k,), variance of each displacement; wave_states (ny, peaks), the state behind the craft's that a
-    channel shows of each peak, -1 for none. de_out (rows, ny, columns): sensitivities of e, columns as the links say
-    (counted from nx, the first nx being the transition matrix), the last ones by process of `noisy_states`, by
-    frequency and damping of each peak, by sizes, by measurement; dv_out (rows, ny, noise columns) those of v; without
-    columns the likelihood alone. variance_out (rows or 0, nx): of the craft's states before each sample; state_out
-    (rows or 0, nx + 2 k): means of all after it. A missing sample has e = 0 and v = 1.
+    x0, variance0 (nx,): mean and variance of the initial state. process: variance a second of each state's white noise,
+    (nx,); measurement: variance of each channel, (ny,). Waves: pairs (k, 22), the same number of each peak, peak after
+    peak; size (k,), variance of each displacement; wave_states (ny, peaks), the state behind the craft's that a channel
+    shows of each peak, -1 for none. turning (rows, ny): multiple of channel `turned_by` by which a sample is taken
+    together with it, 0 for a sample alone; the waves that `turned_by` shows are no part of it. de_out (rows, ny,
+    columns): sensitivities of e, columns as the links say (counted from nx, the first nx being the transition matrix),
+    the last ones by process of `noisy_states`, by frequency and damping of each peak, by sizes, by measurement; dv_out
+    (rows, ny, noise columns) those of v; without columns the likelihood alone. variance_out (rows or 0, nx): of the
+    craft's states before each sample; state_out (rows or 0, nx + 2 k): means of all after it. A missing sample has e =
+    0 and v = 1.
     """
     nx, nu, width = x0.size, inputs.shape[1], de_out.shape[2]
     whole, covs, n = nx + nu + p.size, 1 + dv_out.shape[2], nx + 2 * size.size
     outputs = ng if np.any(select >= nx) else 0
     return _filter_innovations(f, g, inputs, weights, rise, dt, substeps, x0, variance0, p,
                      chain, link_p, link_u, g_link_p, g_link_u, select, noisy_states, process, measurement, measured,
-                     pairs, size, wave_states, e_out, v_out, de_out, dv_out, variance_out, state_out,
-                     np.empty((7, n)),  # 7 vectors of states, taken apart at the kernel's head
+                     pairs, size, wave_states, turned_by, turning,
+                     e_out, v_out, de_out, dv_out, variance_out, state_out,
+                     np.empty((7, 2 * n)),  # 7 vectors, taken apart at the kernel's head; one of two channels
                      np.zeros((4, n, nx + width)), np.empty((3, nu)), np.empty((3, 3 * nu)),
                      np.zeros((nx, whole)), np.zeros((outputs, whole)), np.empty(outputs), np.zeros((covs, n, n)),
-                     np.empty((n, n)), np.empty((covs, n)), np.empty(n, dtype=np.int64))  # fmt: skip
+                     np.empty((n, n)), np.empty((covs, n)), np.empty(2 * n, dtype=np.int64))  # fmt: skip

@@ -9,6 +9,7 @@ from seatrial.core.equations.model import channel_of
 from seatrial.core.values import Array, Index
 from seatrial.numerics.kernels.integrate import correct
 from seatrial.numerics.kernels.kernel import TangentPointer
+from seatrial.physics.sensors.measured_outputs import shows_ground_velocity
 from seatrial.physics.sensors.wave_motion import STILL, WaveMotion
 from seatrial.physics.simulate.batch import SegmentBatch, batch_class
 
@@ -158,6 +159,26 @@ class KalmanFilter(SegmentBatch):
         """State that each output shows of each peak of the waves, -1: none, (ny, peaks)."""
         return self.waves.shown_states([channel_of(o) for o in self.outputs], len(self.model.states))
 
+    @cached_property
+    def _heading(self) -> int:
+        """Column of the heading, where the velocities over ground beside it were turned by its readings; -1: none."""
+        channels = [channel_of(o) for o in self.outputs]
+        return channels.index("psi") if shows_ground_velocity(self.model) and "psi" in channels else -1
+
+    def _turning(self, measured: Array) -> Array:
+        """Multiple of the heading's error that is taken off each sample, (rows, ny).
+
+        Velocities over ground that a heading too large by e turned are u + v e and v - u e: u - v psi and v + u psi are
+        free of e.
+        """
+        turning, channels = np.zeros(measured.shape), [channel_of(o) for o in self.outputs]
+        if self._heading < 0 or not {"u", "v"} <= set(channels):
+            return turning
+        u, v = channels.index("u"), channels.index("v")
+        is_turned = np.all(np.isfinite(measured[:, [u, v, self._heading]]), axis=1)
+        turning[is_turned, u], turning[is_turned, v] = -measured[is_turned, v], measured[is_turned, u]
+        return turning
+
     def transitions(self, segment: int, start: Array, parameters: Array, corrections: Array) -> tuple[Array, Array]:
         """Return transition matrices from sample to sample, (rows - 1, nx, nx), and outputs by states, (rows, ny, nx).
 
@@ -202,12 +223,13 @@ class KalmanFilter(SegmentBatch):
         pairs, size = self.waves.pairs(point.waves, self.dt)
         rows = b - a if with_states else 0
         variance, states = np.empty((rows, nx)), np.empty((rows, nx + 2 * len(size)))
+        readings = np.ascontiguousarray(measured[a:b])
         failed = filter_innovations(
             *self._functions, inputs, weights, self._rise, self.dt,
             self._steps_per_sample, point.start[segment], point.start_variance[segment], point.parameters[segment],
             chain, link_p, link_u, g_link_p, g_link_u, self._output_columns, len(self.model.outputs), self._driven,
-            process, point.deviation**2, np.ascontiguousarray(measured[a:b]), pairs, size, self.wave_states,
-            e, v, de, dv, variance, states,
+            process, point.deviation**2, readings, pairs, size, self.wave_states,
+            self._heading, self._turning(readings), e, v, de, dv, variance, states,
         )  # fmt: skip
         return _FilteredSegment(e, v, de, dv, variance, states, failed >= 0)
 
