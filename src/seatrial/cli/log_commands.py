@@ -113,7 +113,7 @@ def init(
     if questions:
         print_lines([f"{counted(len(questions), 'column')} to decide, marked OPEN in the file"])
     if draft.lacks_speed:
-        print_lines(["U_n to decide, marked OPEN in the file: fixes on one course show speed and current as one"])
+        print_lines(["U_n to decide, marked OPEN in the file: the courses do not separate it from a current"])
     if draft.assumed:
         print_lines([f"ASSUMED, so correct what was not so: {', '.join(draft.assumed)} under [records.waves]"])
     if draft.estimated:

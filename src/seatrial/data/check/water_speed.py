@@ -9,7 +9,8 @@ import numpy as np
 from seatrial.core.values import Array, Record
 from seatrial.data.check.motion import jackknife_least_squares, least_squares, smoothed, smoothed_derivative
 
-_SMOOTHING_S = 3.0  # s over which velocities and yaw rate are smoothed; chosen: short against a turn
+# s over which velocities and yaw rate are smoothed, and rad that a craft then turns at most; chosen: short against a turn
+_SMOOTHING_S, _SMOOTHED_TURN = 3.0, 0.3
 _FEWEST_ROWS = 60  # of all runs together, for a fit of some eight coefficients; chosen
 _MOST_ROWS = 6000  # of all runs together that are fitted; chosen: some tenths of a second
 _SPEED = 2  # place of the speed among the coefficients
@@ -125,8 +126,8 @@ class _Track:
     def from_record(cls, record: Record) -> "_Track | None":
         if "psi" not in record or not ({"x0", "y0"} <= set(record.channels) or {"u", "v"} <= set(record.channels)):
             return None
-        length = max(3, round(_SMOOTHING_S / record.dt)) | 1
-        if len(record) < 4 * length:
+        length = cls._smoothing(record)
+        if not length:
             return None
         c, s = (smoothed(turned(record["psi"]), length) for turned in (np.cos, np.sin))
         rate = smoothed_derivative(np.unwrap(record["psi"]), record.dt, length)
@@ -136,6 +137,15 @@ class _Track:
             u, v = (smoothed(record[symbol], length) for symbol in ("u", "v"))
             north, east = c * u - s * v, s * u + c * v  # R(psi) [u, v], Fossen 2021, eq. (2.41)
         return cls(north, east, c, s, rate, record.dt)
+
+    @staticmethod
+    def _smoothing(record: Record) -> int:
+        """Return the samples of smoothing, fewer for a craft that turns fast; 0 for a run that is too short."""
+        length = max(3, round(_SMOOTHING_S / record.dt)) | 1
+        if len(record) < 4 * length:
+            return 0
+        fastest = float(np.max(np.abs(smoothed_derivative(np.unwrap(record["psi"]), record.dt, length))))
+        return min(length, max(3, round(_SMOOTHED_TURN / max(fastest * record.dt, _SMOOTHED_TURN / length))) | 1)
 
     def target(self, every: int) -> Array:
         return np.stack([self.north, self.east], axis=1)[::every].ravel()

@@ -204,8 +204,8 @@ def _speed_lines(model: StartingModel) -> list[str]:
     water = model.water
     if water is not None and model.is_speed_open:
         return [
-            f"{OPEN_SPEED}: m/s through the water, which was not recorded; one course does not show it beside a "
-            f"current. The runs show {model.speed:.2f} over ground: right in still water, else write the log's speed",
+            f"{OPEN_SPEED}: m/s through the water, which was not recorded; the courses do not separate it from "
+            f"a current. The runs show {model.speed:.2f} over ground: right in still water, else write the log's speed",
             f"# U_n = {model.speed:.2f}",
         ]
     if water is not None:

@@ -72,8 +72,8 @@ class StartingModel:
 
     @property
     def is_speed_open(self) -> bool:
-        """Whether the runs are over ground and on one course, which does not separate speed and current."""
-        return self.water is not None and not self.water.is_separate
+        """Whether the runs are over ground, on courses that do not separate speed and current."""
+        return self.water is not None and not self.water.shows_current
 
     @property
     def is_in_current(self) -> bool:
