@@ -9,7 +9,7 @@ import numpy as np
 from seatrial.core.values import Array, Record
 from seatrial.data.check.motion import jackknife_least_squares, least_squares, smoothed, smoothed_derivative
 
-# s over which velocities and yaw rate are smoothed, and rad that a craft then turns at most; chosen: short against a turn
+# s over which velocities and yaw rate are smoothed, rad that a craft then turns at most; chosen: short against a turn
 _SMOOTHING_S, _SMOOTHED_TURN = 3.0, 0.3
 _FEWEST_ROWS = 60  # of all runs together, for a fit of some eight coefficients; chosen
 _MOST_ROWS = 6000  # of all runs together that are fitted; chosen: some tenths of a second
