@@ -16,9 +16,8 @@ from seatrial.data.check import canonical_record
 from seatrial.data.read import Layout
 from seatrial.data.read.assemble import record_from_values
 from seatrial.data.trial import Role, Trial
-from seatrial.data.trial.runs import require_stream
 from seatrial.data.trial.settings import Stream
-from seatrial.data.trial.trial import Run
+from seatrial.estimation.identify.online import stream_run
 from seatrial.onboard.journal import Journal, RunEntry
 from seatrial.onboard.proposer import GainProposer
 
@@ -203,8 +202,7 @@ def with_training_records(trial: Trial, records: tuple[Record, ...], *, has_chan
 
     has_changed: whether they are of another ship than its own training runs, which are then left out.
     """
-    waves = require_stream(trial).waves
-    came = tuple(Run(record, waves=waves) for record in records)
+    came = tuple(stream_run(trial, record) for record in records)
     others = tuple(run for run in trial.runs if run.role is not Role.TRAIN)
     return replace(trial, runs=(*(() if has_changed else trial.runs_with_role(Role.TRAIN)), *came, *others))
 

@@ -4,12 +4,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from seatrial.core.equations import Model
 from seatrial.core.results.online import CoefficientChange, Sample, Snapshot
 from seatrial.core.values import Array, InputError, Record
+from seatrial.data.check.phases import begins_before_release, is_free_decay
 from seatrial.data.read.assemble import record_from_values
-from seatrial.data.trial import Role, Run, Trial
+from seatrial.data.trial import Role, Run, Trial, Trimming
 from seatrial.data.trial.records import load_run
 from seatrial.data.trial.runs import require_stream
+from seatrial.estimation.estimate.criterion_choice import is_explained
 from seatrial.estimation.estimate.online.change_detector import ChangeDetector, GaussianEstimate
 from seatrial.estimation.estimate.online.window import SampleRows, WindowEstimate
 from seatrial.estimation.identify.online.phases import (
@@ -40,6 +43,17 @@ from seatrial.estimation.identify.online.phases import (
 
 # a run of fewer samples is left out: no slope can be taken from it
 MIN_RUN_SAMPLES = 3
+
+
+def stream_run(trial: Trial, raw_record: Record) -> Run:
+    """Return a run of the trial's stream, as received, as a training run; one held before its release begins there."""
+    is_held = _is_undriven(trial.model, raw_record) and begins_before_release(raw_record)
+    return Run(raw_record, waves=require_stream(trial).waves, trimming=Trimming(from_release=is_held))
+
+
+def _is_undriven(model: Model, record: Record) -> bool:
+    """Whether nothing is recorded that moves a model which swings, so that it can only be released."""
+    return not model.has_course and not {*model.input_names} & {*record.channels}
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +144,8 @@ class StreamWindow:
 
     def training_runs(self) -> tuple[Run, ...]:
         """Return the stream's runs kept, as received, as training runs of a trial."""
-        return tuple(self._training_run(raw) for raw in (*(raw for raw, _ in self._closed), *self._present_record()))
+        raw_records = (*(raw for raw, _ in self._closed), *self._present_record())
+        return tuple(stream_run(self._trial, raw) for raw in raw_records)
 
     def _empty_run(self, number: int) -> _StreamRun:
         return _StreamRun(number, SampleRows(len(self._stream.layout.columns)))
@@ -145,11 +160,8 @@ class StreamWindow:
         name = self._stream.name if run.number <= 1 else f"{self._stream.name}_{run.number}"
         return record_from_values(name, self._stream.layout, run.rows.time, run.rows.values)
 
-    def _training_run(self, raw_record: Record) -> Run:
-        return Run(raw_record, waves=self._stream.waves)
-
     def _canonical_record(self, raw_record: Record) -> Record:
-        record = load_run(self._training_run(raw_record), self._trial.reference_point).record
+        record = load_run(stream_run(self._trial, raw_record), self._trial.reference_point).record
         rate = self._trial.estimate.rate
         return record if rate is None else record.resampled(rate)
 
@@ -164,6 +176,7 @@ _NOTHING_FREE = "every coefficient of the model is fixed: none is estimated"
 _UNWATCHED = "Changes are not watched: the residuals are not white, so that the model or its inputs are off."
 _UNEXPLAINED = 20.0  # s of coloured residuals before which a change that explains them is seen; chosen
 _SHOWN, _YOUNG = 0.3, 20.0  # relative standard errors below which numbers say something; s of a window; chosen
+_UNRELEASED = "the motion does not die out from a release yet, and no initial state explains it: it may still be held"
 _NO_MODEL_YET = "the samples so far lead to no model that can be simulated"
 
 
@@ -292,10 +305,15 @@ class OnlineEstimator:
         seconds = self._window.seconds
         self._schedule.note_search(seconds, is_carried=isinstance(phase, Carried))
         if self._window.samples >= _MIN_SAMPLES:
+            records = list[Record]()
             try:
+                records = self._window.records()
                 with np.errstate(all="ignore"):  # a trial step may overflow; the search then takes another
                     near = None if self._between is None else self._snapshot.value
-                    estimate = self._search.estimate(phase, self._window.records(), near)
+                    estimate = self._search.estimate(phase, records, near)
+                if self._is_unreleased(records, estimate):
+                    self._wait_for_release(records)
+                    return
                 if self._watch is None and self._compare_search(estimate):
                     self._begin_anew()
                     return
@@ -309,9 +327,24 @@ class OnlineEstimator:
             except (InputError, np.linalg.LinAlgError) as error:
                 if isinstance(phase, WarmUp):
                     reason = str(error) if isinstance(error, InputError) else _NO_MODEL_YET
+                    reason = _UNRELEASED if records and self._has_no_release(records[-1]) else reason
                     self._snapshot = replace(self._snapshot, advice=reason)
         if not isinstance(phase, WarmUp) and is_window_full(phase, seconds, self._stream, self._schedule.intervals):
             self._leave_window(phase)
+
+    def _is_unreleased(self, records: list[Record], estimate: WindowEstimate) -> bool:
+        """Whether the present run has no release, and no initial state explains it."""
+        return self._has_no_release(records[-1]) and (estimate.is_coloured or not is_explained(estimate.estimate))
+
+    def _has_no_release(self, record: Record) -> bool:
+        """Whether nothing is recorded that moves the ship, and it does not roll out either."""
+        return _is_undriven(self._trial.model, record) and not is_free_decay(record)
+
+    def _wait_for_release(self, records: list[Record]) -> None:
+        """Keep the estimate of the runs before the present one; of this one alone there is none."""
+        if len(records) == 1 and not isinstance(self._phase, Carried):
+            self._phase, self._between, self._watch = WarmUp(), None, None
+            self._snapshot = replace(first_snapshot(self._trial.model, self.change), advice=_UNRELEASED)
 
     def _note_colour(self, *, is_coloured: bool) -> None:
         """Watch no longer, and say so, where residuals stay coloured without a change that would explain it."""
