@@ -77,6 +77,9 @@ def test_changes_in_a_row_are_the_models_misfit() -> None:
         assert detector.detected is not None
         assert detector.detected.is_believed == (k < 3)
     assert detector.is_ended
+    assert detector.detected is not None  # one finding, from the first to the last
+    assert (detector.detected.since, detector.detected.reported_at) == (0.0, 35.0)
+    assert detector.detected.before == {"a": 1.0}
     detector.update_search(50.0, GaussianEstimate(np.ones(1), known))
     assert not detector.update_search(55.0, GaussianEstimate(np.full(1, 1.3), 0.5 * known))
 

@@ -139,8 +139,8 @@ class FilterWatch:
 # What is reported of both, and until when.
 
 _APART = 0.8  # of an earlier search's variances, to which another's have to fall to be compared with it; chosen
-_SOON, _MOST_IN_A_ROW = 60.0, 3  # s between changes that count as in a row, and how many a ship makes; chosen: a ramp
-# of a minute is found in three
+_SOON, _MOST_IN_A_ROW = 60.0, 3  # s from a report to a change that counts as one with it, and how many a ship makes;
+# chosen: a ramp of a minute is found in three
 _SPAN = 3.0  # nats below the likeliest instant down to which another is inside its interval: half of chi squared, 99 %
 
 
@@ -206,7 +206,7 @@ class ChangeDetector:
         self._searches = ()
 
     def _report(self, time: float, instants: Sequence[_Instant], moves: _Moves) -> None:
-        """Report the change at the likeliest instant, unless it is that of a ship which changes all the time."""
+        """Report the change at the likeliest instant; of a ship which changes all the time none is believed."""
         nats = moves.evidence
         best = int(np.argmax(nats))
         likely = np.flatnonzero(nats >= nats[best] - _SPAN)
@@ -220,7 +220,22 @@ class ChangeDetector:
         change = CoefficientChange(
             instant.time, between, time, float(nats[best]), self.names[clearest], before, error_before
         )
-        is_soon = self.detected is not None and change.since - self.detected.since < _SOON
-        self._in_a_row = self._in_a_row + 1 if is_soon else 1
-        self.detected = replace(change, is_believed=not self.is_ended)
+        self._in_a_row = self._in_a_row + 1 if self._follows_closely(change) else 1
+        self.detected = self._joined(change) if self._in_a_row > 1 else change
         self.restart()
+
+    def _follows_closely(self, change: CoefficientChange) -> bool:
+        return self.detected is not None and change.since - self.detected.reported_at < _SOON
+
+    def _joined(self, change: CoefficientChange) -> CoefficientChange:
+        """One finding with the change that it follows closely: as a whole it is believed or it is not."""
+        first = self.detected
+        assert first is not None
+        clearest = max(first, change, key=lambda one: one.evidence)
+        return replace(
+            first,
+            reported_at=change.reported_at,
+            evidence=first.evidence + change.evidence,
+            most_changed=clearest.most_changed,
+            is_believed=first.is_believed and not self.is_ended,
+        )
