@@ -12,7 +12,7 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, InputError
 from seatrial.numerics.kernels.integrate import spline_slopes, step_scratch, step_tables
 from seatrial.numerics.kernels.kernel import TangentPointer
-from seatrial.numerics.kernels.recursive import filter_linear, filter_runge_kutta
+from seatrial.numerics.kernels.recursive import CHANGED, LOOKS, STATE, filter_linear, filter_runge_kutta
 from seatrial.physics.simulate.batch import SegmentBatch
 from seatrial.physics.simulate.linear import SUBSTEPS, DiscreteMatrices, discrete_matrices
 
@@ -90,6 +90,28 @@ _MAX_MOVE_SHARE = 0.01  # share of the coefficient; see `ExactStepper`; chosen
 _Linearisation = tuple[Array, Array, Array, Array, Array, Array, Array]
 
 
+@dataclass(frozen=True)
+class JumpSearch:
+    """What a filter looks for at a bank of instants, and until when.
+
+    Attributes:
+        instants: most of them; with any, no sample waits for later ones, and a smooth input's last slope is of earlier
+            ones alone.
+        size: standard deviation of a jump before any data, relative to the coefficient.
+        threshold: nats of evidence that end the search for one.
+        known: relative standard error of every coefficient up to which an instant is kept.
+    """
+
+    instants: int = 0
+    size: float = 0.0
+    threshold: float = np.inf
+    known: float = 0.0
+
+
+NO_JUMP = JumpSearch()
+"""No jump is looked for."""
+
+
 @dataclass(frozen=True, eq=False)
 class JumpBank:
     """What the data since each of m instants say of a jump of the k coefficients there, changed in place.
@@ -97,10 +119,13 @@ class JumpBank:
     The state, of nx, goes on from its value there. Sizes are relative to the coefficients of the instant.
 
     Attributes:
-        effects: of a jump on the error of [coefficients | state], (k + nx, m k).
-        information: on its size, (m, k, k); score: (m, k), information times the likeliest size.
-        innovation_effects, propagated: room for `kernels.recursive`, (m k,) and (nx, m k).
+        effects: of a jump on the error of [coefficients | state], (k + nx, k m).
+        information: on its size, (k, k, m), lower triangle; score: (k, m), information times the likeliest size.
+        innovation_effects, propagated, root, solved: room for `kernels.recursive`.
         latest: innovations of each channel, (ny, 4).
+        opened: look at which each instant was kept, (m,); -1: none is in that place.
+        known: value and standard error of the coefficients there, (2 k, m); bounds: of the coefficients, (2, k).
+        limits, progress: see `kernels.recursive`.
     """
 
     effects: Array
@@ -109,36 +134,53 @@ class JumpBank:
     innovation_effects: Array
     latest: Array
     propagated: Array
+    root: Array
+    solved: Array
+    opened: Index
+    known: Array
+    bounds: Array
+    limits: Array
+    progress: Index
 
     @classmethod
-    def of_size(cls, instants: int, coefficients: int, states: int, outputs: int) -> Self:
-        """Return a bank of so many instants, at none of which a jump is looked for yet."""
-        m, k, width = instants, coefficients, instants * coefficients
+    def of_size(cls, search: JumpSearch, states: int, outputs: int, bounds: Array, divergence_ratio: float) -> Self:
+        """Return a bank, at no instant of which a jump is looked for yet."""
+        m, k = search.instants, bounds.shape[1]
         return cls(
-            np.zeros((k + states, width)), np.zeros((m, k, k)), np.zeros((m, k)), np.zeros(width),
-            np.zeros((outputs, 4)), np.zeros((states, width)),
+            np.zeros((k + states, k * m)), np.zeros((k, k, m)), np.zeros((k, m)), np.zeros(k * m),
+            np.zeros((outputs, 4)), np.zeros((states, k * m)), np.zeros((k, k, m)), np.zeros((k, m)),
+            np.full(m, -1, dtype=np.int64), np.zeros((2 * k, m)), bounds,
+            np.array([search.size**2, search.threshold, search.known, divergence_ratio]), np.zeros(2, dtype=np.int64),
         )  # fmt: skip
 
     @property
-    def arrays(self) -> tuple[Array, Array, Array, Array, Array, Array]:
+    def arrays(self) -> tuple[Array | Index, ...]:
         """All of them, as the kernels take them."""
-        return self.effects, self.information, self.score, self.innovation_effects, self.latest, self.propagated
+        return (
+            self.effects, self.information, self.score, self.innovation_effects, self.latest, self.propagated,
+            self.root, self.solved, self.opened, self.known, self.bounds, self.limits, self.progress,
+        )  # fmt: skip
+
+    @property
+    def looks(self) -> int:
+        """Number of samples after which the present instant was kept."""
+        return int(self.progress[LOOKS])
+
+    @property
+    def has_changed(self) -> bool:
+        """Whether the evidence for a jump was enough; no sample behind that one has been taken in."""
+        return bool(self.progress[STATE] == CHANGED)
 
     def emptied(self) -> Self:
         """Return a bank of no instant."""
-        return self.of_size(0, self.score.shape[1], len(self.propagated), len(self.latest))
-
-    def open(self, place: int, value: Array) -> None:
-        """Put the present instant, at which the coefficients are `value` (k,), in the place of another."""
-        k = self.score.shape[1]
-        self.close(place)
-        self.effects[:k, place * k : (place + 1) * k] = np.diag(np.where(value == 0.0, 1.0, value))
-
-    def close(self, place: int) -> None:
-        """Look for no jump at the instant in that place any longer: there is no evidence for it."""
-        k = self.score.shape[1]
-        self.effects[:, place * k : (place + 1) * k] = 0.0
-        self.information[place], self.score[place] = 0.0, 0.0
+        k = self.bounds.shape[1]
+        none = np.zeros((k, 0)), np.zeros((k, k, 0))
+        return replace(
+            self, effects=np.zeros((len(self.effects), 0)), information=none[1], score=none[0],
+            innovation_effects=np.zeros(0), latest=np.zeros_like(self.latest),
+            propagated=np.zeros((len(self.propagated), 0)), root=none[1], solved=none[0],
+            opened=np.zeros(0, dtype=np.int64), known=np.zeros((2 * k, 0)), progress=np.zeros(2, dtype=np.int64),
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -432,7 +474,7 @@ class RecursiveFilter:
         substeps: int = 1,
         forgetting: Forgetting | None = None,
         guard: DivergenceGuard | None = None,
-        instants: int = 0,
+        jumps: JumpSearch = NO_JUMP,
     ) -> None:
         """Carry `belief` on.
 
@@ -443,8 +485,7 @@ class RecursiveFilter:
             dt: s between samples.
             recent: the run's latest inputs up to the present sample, (m, nu), m >= 1, in the model's signs, a dozen if
                 there are. None: the belief stands before a run's first sample, which comes next.
-            instants: most at which jumps of the coefficients are looked for; then no sample waits for later ones, and
-                a smooth input's last slope is of earlier ones alone.
+            jumps: of the coefficients, that are looked for.
 
         Raises:
             InputError: names the model does not have, or shapes that do not agree.
@@ -463,8 +504,11 @@ class RecursiveFilter:
         self._stepper = stepper_for(model, self.names, self.outputs, dt, substeps)
         bounds = [model.parameters[n] for n in self.names]
         self._lower, self._upper = np.array([b.lower for b in bounds]), np.array([b.upper for b in bounds])
-        self.jumps = JumpBank.of_size(instants, len(self.names), len(model.states), len(self.outputs))
-        self._look_ahead = 0 if instants else self._stepper.look_ahead
+        self.jumps = JumpBank.of_size(
+            jumps, len(model.states), len(self.outputs), np.array([self._lower, self._upper]),
+            self._guard.divergence_ratio,
+        )  # fmt: skip
+        self._look_ahead = 0 if jumps.instants else self._stepper.look_ahead
         self._filter_state = _initial_filter_state(
             initial, np.asarray(noise, dtype=np.float64), dt, self._guard, forgetting or Forgetting(), self.jumps
         )
@@ -589,7 +633,9 @@ class RecursiveFilter:
         a channel are larger than believed (`Guard.unsound`) while its mean covers half the guard's memory.
         """
         h = self._filter_state
-        if self._buffer.failed or not (np.all(np.isfinite(h.z)) and np.all(np.isfinite(h.root))):
+        if (self._buffer.failed and not self.jumps.has_changed) or not (
+            np.all(np.isfinite(h.z)) and np.all(np.isfinite(h.root))
+        ):
             return False
         value = h.z[: len(self.names)]
         if np.any(value < self._lower) or np.any(value > self._upper):

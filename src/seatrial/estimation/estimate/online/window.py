@@ -9,7 +9,14 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate.assemble import Runs, output_error_problem
-from seatrial.estimation.estimate.online.recursive import DivergenceGuard, Forgetting, GaussianState, RecursiveFilter
+from seatrial.estimation.estimate.online.recursive import (
+    NO_JUMP,
+    DivergenceGuard,
+    Forgetting,
+    GaussianState,
+    JumpSearch,
+    RecursiveFilter,
+)
 from seatrial.estimation.estimate.point_estimate import PointEstimate, residual_correlation, residual_spread
 from seatrial.estimation.estimate.settings import WHITE_INFLATION, resolved_time, weak_form_half_width
 from seatrial.estimation.estimate.start import find_start
@@ -158,13 +165,13 @@ def filter_from_fit(
     forgetting: Forgetting | None = None,
     guard: DivergenceGuard | None = None,
     noise_excess: float = 1.0,
-    instants: int = 0,
+    jumps: JumpSearch = NO_JUMP,
 ) -> RecursiveFilter:
     """Return the filter that continues after the fit's last sample; `normal` as for `gaussian_state_from_fit`.
 
     Its noise is the fit's, coloured channels counted as the fit counts them, of `noise_excess` times the variance; an
     innovation is cut where the fit's loss is (`DivergenceGuard` where that is square). See `curvature` for whether the
-    fit is good enough, and `RecursiveFilter` for the `instants`.
+    fit is good enough, and `JumpSearch` for the `jumps`.
 
     Raises:
         InputError: the records do not identify every coefficient, or the fit corrects inputs or has a current, which a
@@ -194,7 +201,7 @@ def filter_from_fit(
         substeps=problem.substeps,
         forgetting=forgetting,
         guard=guard,
-        instants=instants,
+        jumps=jumps,
     )
 
 

@@ -17,7 +17,7 @@ from seatrial.data.trial import FitCriterion, Trial, with_input_corners
 from seatrial.data.trial.settings import Stream
 from seatrial.estimation.estimate.assemble import MarginalPrior, Runs, marginalise
 from seatrial.estimation.estimate.fit import estimate_model, with_segment_seconds
-from seatrial.estimation.estimate.online.change_detector import FilterWatch, GaussianEstimate, bank_size
+from seatrial.estimation.estimate.online.change_detector import FilterWatch, GaussianEstimate, jump_search
 from seatrial.estimation.estimate.online.recursive import Forgetting
 from seatrial.estimation.estimate.online.window import (
     LINEAR_ENOUGH,
@@ -375,14 +375,14 @@ class RecursivePhase:
         widest = tuple(float(v) for v in np.maximum(np.abs(estimate.value), _scales(estimate)))
         forgetting = None if stream.forgetting_time_s is None else Forgetting(stream.forgetting_time_s, widest)
         if is_watching:
-            size = bank_size(stream.rate)
-            self._filter = filter_from_fit(*optimum, noise_excess=estimate.noise_excess, instants=size)
+            jumps = jump_search(stream.rate)
+            self._filter = filter_from_fit(*optimum, noise_excess=estimate.noise_excess, jumps=jumps)
         else:
             self._filter = filter_from_fit(*optimum, forgetting=forgetting)
         self.watch = FilterWatch(self._filter)
         self._model, self._outputs = fit.problem.model, fit.problem.data.outputs
         columns = len(stream.layout.columns)
-        self._block, self._rows = SampleRows(columns), list[Array]()
+        self._block, self._rows, self._times = SampleRows(columns), list[Array](), list[float]()
         self._last_inputs = np.zeros(len(self._model.inputs))
         # a heading turns on and on, so that a sample of it needs those before
         self._map = None if self._model.has_heading else SampleMap.of_stream(self._converted, columns)
@@ -393,6 +393,7 @@ class RecursivePhase:
         if self._map is None:
             self._block.add(time, values)
         else:
+            self._times.append(time)
             self._rows.append(self._filled(self._map.apply(values)))
         if len(self._block) + len(self._rows) < self._block_samples:
             return False
@@ -452,11 +453,11 @@ class RecursivePhase:
     def _process_block(self) -> None:
         if self._map is None:
             block, self._block = self._block, SampleRows(self._block.values.shape[1])
-            rows = [self._filled(row) for row in self._converted(block.values, block.time)]
+            times, rows = block.time, [self._filled(row) for row in self._converted(block.values, block.time)]
         else:
-            rows, self._rows = self._rows, []
-        measured, inputs = self._split(np.array(rows))
-        self._filter.update(measured, inputs)
+            times, rows = np.array(self._times), self._rows
+            self._times, self._rows = [], []
+        self.watch.update(times, *self._split(np.array(rows)))
 
     def _split(self, rows: Array) -> tuple[Array, Array]:
         """Outputs and inputs of rows (n, nu + ny)."""
