@@ -363,10 +363,11 @@ def filter_linear(
     step_matrix (nx, nx + nw), output_matrix (ny, nx + nu + 1): the step and the outputs at `expansion_point`, columns
     state, then inputs; their derivatives by the coefficients, last axis: de (nx, nx, k), dg (nx, nw, k), dc (ny, nx,
     k), dd (ny, nu + 1, k). nw = 4 nu + 1: inputs at both ends of the step, their slopes a step at both ends, 1.
-    inputs, slopes, measured: a row a sample; is_run_start: 1 where row `first_row` is the first of a run. z and root
-    are those of the row before. variance (ny,) to counts and effects to latest: see `update_sample`; moved (nx, k m):
-    room for effects; floor_root, forgetting_factor: see `forget`, which is done every `forget_every` samples,
-    samples_since counting them.
+    inputs, slopes (2 nu: those of the row before, its own), measured: a row a sample; is_run_start: 1 where row
+    `first_row` is the first of a run. z and root are those of the row before. variance (ny,) to counts and effects to
+    progress: see `update_sample`, `_watch_sample`; moved (nx, k m): room for effects; floor_root, forgetting_factor:
+    see `forget`, which is done every `forget_every` samples, samples_since counting them. Where the watch ends its row
+    is returned, too.
     """
     k, nx, nu = expansion_point.size, x.size, inputs.shape[1]
     ny = variance.size
@@ -374,7 +375,7 @@ def filter_linear(
         if row > first_row or is_run_start == 0:
             for j in range(nu):
                 w[j], w[nu + j] = inputs[row - 1, j], inputs[row, j]
-                w[2 * nu + j], w[3 * nu + j] = slopes[row - 1, j], slopes[row, j]
+                w[2 * nu + j], w[3 * nu + j] = slopes[row, j], slopes[row, nu + j]
             w[4 * nu] = 1.0
             size = 0.0
             for i in range(nx):

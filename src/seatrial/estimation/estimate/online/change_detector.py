@@ -8,7 +8,7 @@ import numpy as np
 from seatrial.core.results.online import CoefficientChange
 from seatrial.core.values import Array
 from seatrial.estimation.estimate.online.recursive import JumpSearch, RecursiveFilter
-from seatrial.numerics.kernels.recursive import CLOSE_SAMPLES, STATE, jump_evidence
+from seatrial.numerics.kernels.recursive import CLOSE_SAMPLES, jump_evidence
 
 # What the data after an instant say against those before it.
 
@@ -108,12 +108,19 @@ class FilterWatch:
 
         Others as of `RecursiveFilter.update`.
         """
+        if self._filter.is_halted:
+            return len(times)
         jumps = self._filter.jumps
         before = jumps.looks
         self._filter.update(measured, inputs)
         new = np.flatnonzero(jumps.opened >= before)
         self._times[new] = times[jumps.opened[new] - before]
-        return jumps.looks - before + bool(jumps.progress[STATE])
+        return jumps.looks - before + self._filter.is_halted if jumps.is_searched else len(times)
+
+    @property
+    def is_ended(self) -> bool:
+        """Whether no more samples are taken in: there is a change, or the filter is no longer sound."""
+        return self._filter.is_halted
 
     @property
     def has_changed(self) -> bool:

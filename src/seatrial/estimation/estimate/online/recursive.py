@@ -10,7 +10,7 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, InputError
-from seatrial.numerics.kernels.integrate import spline_slopes, step_scratch, step_tables
+from seatrial.numerics.kernels.integrate import latest_slopes, spline_slopes, step_scratch, step_tables
 from seatrial.numerics.kernels.kernel import TangentPointer
 from seatrial.numerics.kernels.recursive import CHANGED, LOOKS, STATE, filter_linear, filter_runge_kutta
 from seatrial.physics.simulate.batch import SegmentBatch
@@ -83,6 +83,7 @@ def covariance_root(covariance: Array, name: str) -> Array:
 LOOK_AHEAD = 6
 """Samples that a smooth input is known ahead of its step: a spline's end is felt by 4e-4 of itself there."""
 
+_HISTORY_SAMPLES = 12  # inputs kept before the sample in work, for the spline; chosen
 _MAX_MOVE_ERRORS = 0.2  # standard errors; see `ExactStepper`; chosen
 _MAX_MOVE_SHARE = 0.01  # share of the coefficient; see `ExactStepper`; chosen
 
@@ -160,6 +161,11 @@ class JumpBank:
             self.effects, self.information, self.score, self.innovation_effects, self.latest, self.propagated,
             self.root, self.solved, self.opened, self.known, self.bounds, self.limits, self.progress,
         )  # fmt: skip
+
+    @property
+    def is_searched(self) -> bool:
+        """Whether jumps are looked for."""
+        return self.opened.size > 0
 
     @property
     def looks(self) -> int:
@@ -313,7 +319,7 @@ class ExactStepper:
 
     def run(self, filter_state: FilterState, inputs: Array, measured: Array, first: int, is_run_start: int) -> int:
         """As `Stepping.run`."""
-        slopes, row = spline_slopes(inputs), first
+        slopes, row = self._input_slopes(inputs, is_causal=filter_state.jumps.is_searched), first
         while row < len(measured):
             made = self._linearise(filter_state)
             until = min(row + self.CHECK_ROWS - self._rows_since_check, len(measured))
@@ -332,6 +338,13 @@ class ExactStepper:
                 until,
             )
         return -1
+
+    def _input_slopes(self, inputs: Array, *, is_causal: bool) -> Array:
+        """Slopes of the inputs at the row before each and there; is_causal: from rows up to it alone."""
+        if is_causal:
+            return latest_slopes(inputs, _HISTORY_SAMPLES)
+        slopes = spline_slopes(inputs)
+        return np.hstack([np.concatenate([slopes[:1], slopes[:-1]]), slopes])
 
     def _linearise(self, filter_state: FilterState) -> _Linearisation:
         if self._linearisation is not None and (self._is_fixed or self._rows_since_check):
@@ -393,7 +406,6 @@ def stepper_for(model: Model, names: tuple[str, ...], outputs: tuple[str, ...], 
     return (ExactStepper if model.is_affine else RungeKuttaStepper)(model, names, outputs, dt, substeps)
 
 
-_HISTORY_SAMPLES = 12  # inputs kept before the sample in work, for the spline; chosen
 _FORGETTING_STEPS = 200  # forgetting acts so many times in a time constant; chosen
 
 
@@ -624,6 +636,11 @@ class RecursiveFilter:
         return InnovationStatistics(
             np.sqrt(h.running_means[:, 1]), h.running_means[:, 0].copy(), h.counts[0].copy(), h.counts[1].copy()
         )
+
+    @property
+    def is_halted(self) -> bool:
+        """Whether nothing more is taken in: the state has left all bounds, or a jump ended the search for one."""
+        return self._buffer.failed
 
     @property
     def is_sound(self) -> bool:

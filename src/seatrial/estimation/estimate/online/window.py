@@ -40,13 +40,15 @@ class SampleRows:
     def __len__(self) -> int:
         return self._count
 
-    def add(self, time: float, values: Array) -> None:
-        """One row more."""
-        if self._count == len(self._time):
-            self._time = np.concatenate([self._time, np.empty(self._count)])
-            self._values = np.concatenate([self._values, np.empty_like(self._values)])
-        self._time[self._count], self._values[self._count] = time, values
-        self._count += 1
+    def add(self, times: Array, values: Array) -> None:
+        """Rows more: times (n,), values (n, width)."""
+        count = self._count + len(times)
+        if count > len(self._time):
+            more = max(self._count, len(times))
+            self._time = np.concatenate([self._time, np.empty(more)])
+            self._values = np.concatenate([self._values, np.empty((more, self._values.shape[1]))])
+        self._time[self._count : count], self._values[self._count : count] = times, values
+        self._count = count
 
     @property
     def time(self) -> Array:

@@ -16,6 +16,7 @@ from seatrial.estimation.estimate.criterion_choice import is_explained
 from seatrial.estimation.estimate.online.change_detector import ChangeDetector, GaussianEstimate
 from seatrial.estimation.estimate.online.window import SampleRows, WindowEstimate
 from seatrial.estimation.identify.online.phases import (
+    BLOCK_SAMPLES,
     CONTINUED_INTERVALS,
     REPEATED_INTERVALS,
     Carried,
@@ -117,15 +118,15 @@ class StreamWindow:
         self._closed_seconds += ended.rows.duration
         self._closed_samples += len(ended.rows)
 
-    def add(self, sample: Sample) -> None:
-        """Append a sample to the present run.
+    def add(self, times: Array, values: Array) -> None:
+        """Append samples to the present run: times (n,), s, values (n, columns).
 
         Raises:
             RuntimeError: no run has begun.
         """
         if self._open is None:
             raise RuntimeError("a sample came before a run began; call begin_run first")
-        self._open.rows.add(sample.time, sample.values)
+        self._open.rows.add(times, values)
 
     def clear(self) -> None:
         """Forget all samples and the trial's own records; the present run goes on."""
@@ -177,6 +178,7 @@ _UNWATCHED = "Changes are not watched: the residuals are not white, so that the 
 _UNEXPLAINED = 20.0  # s of coloured residuals before which a change that explains them is seen; chosen
 _SHOWN, _YOUNG = 0.3, 20.0  # relative standard errors below which numbers say something; s of a window; chosen
 _UNRELEASED = "the motion does not die out from a release yet, and no initial state explains it: it may still be held"
+_MOVING = 60.0  # s of a window, up to which an estimate moves so much within a block that each sample decides; chosen
 _NO_MODEL_YET = "the samples so far lead to no model that can be simulated"
 
 
@@ -229,30 +231,78 @@ class OnlineEstimator:
 
     def update(self, sample: Sample) -> Snapshot:
         """Take in one sample, later than the last, and return the estimate by now."""
+        return self.update_block(np.array([sample.time]), sample.values[None])
+
+    def update_block(self, times: Array, values: Array) -> Snapshot:
+        """Take in samples of one run, later than the last, and return the estimate by now.
+
+        The estimate has the bits that it has behind the same samples one by one.
+
+        Args:
+            times: s on the stream's clock, (n,); values: a row a sample, as the stream's layout has them, (n, columns).
+        """
         if not self._window.has_run:
             self.begin_run()
-        self._progress = self._progress.with_sample(sample.time)
         if not self._trial.model.parameters.free_names:
-            self._snapshot = at_progress(self._snapshot, self._progress)
-            return self._snapshot
-        if isinstance(self._phase, RecursivePhase):
-            self._filter(self._phase, sample)
-        else:
-            self._window.add(sample)
-            if self._between is not None:
-                self._show_sample(self._between, sample)
-            if self._is_changed_at(sample):
-                self._begin_anew()
-            elif self._is_search_due() and self._window.open_samples >= MIN_RUN_SAMPLES:
-                self.relinearise()
+            self._progress = self._progress.with_samples(times)
+        taken, watched, watch = 0, 0, None  # samples taken in, and by which watch ahead of them
+        while taken < len(times) and self._trial.model.parameters.free_names:
+            if self._watch is not watch or watched <= taken:
+                watch = self._watch
+                watched = len(times) if watch is None else taken + watch.take(times[taken:], values[taken:])
+            until = min(watched, taken + self._samples_to_decision())
+            self._take(times[taken:until], values[taken:until], is_watch_ended=until == watched)
+            taken = until
+        self._show()
         self._snapshot = at_progress(self._snapshot, self._progress)
         return self._snapshot
+
+    def _samples_to_decision(self) -> int:
+        """Number of samples up to the next at which it is decided how to go on, at most."""
+        if isinstance(self._phase, RecursivePhase):
+            return self._phase.room
+        return 1 if self._between is None or self._window.seconds < _MOVING else self._between.room
+
+    def _take(self, times: Array, values: Array, *, is_watch_ended: bool) -> None:
+        """Take in samples up to the next decision; is_watch_ended: whether the watch may end with the last of them."""
+        self._progress = self._progress.with_samples(times)
+        phase = self._phase
+        if isinstance(phase, RecursivePhase):
+            phase.take(times, values)
+            if phase.room == BLOCK_SAMPLES and not phase.is_sound:
+                self._leave_filter(phase)
+            elif is_watch_ended and self._is_changed():
+                self._begin_anew()
+            return
+        self._window.add(times, values)
+        if self._between is not None:
+            self._between.take(times, values)
+            if self._between.room == BLOCK_SAMPLES and not self._between.is_sound:
+                self._between = None
+                assert not isinstance(phase, WarmUp)
+                self._snapshot = window_snapshot(self._snapshot, self._trial.model, phase, phase.estimate)
+        if is_watch_ended and self._is_changed():
+            self._begin_anew()
+        elif self._is_search_due() and self._window.open_samples >= MIN_RUN_SAMPLES:
+            self.relinearise()
+
+    def _show(self) -> None:
+        """Show the estimate of all samples so far."""
+        if isinstance(self._phase, RecursivePhase):
+            self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, self._phase)
+        elif self._between is not None:
+            estimate = self._between.estimate_by_now()
+            if estimate is not None:
+                self._snapshot = snapshot_of_now(self._snapshot, self._trial.model, estimate)
 
     def _is_search_due(self) -> bool:
         """Whether the window is to be searched: the filter beside it has moved too far, or where there is none, now."""
         phase = self._phase
         if self._between is None or not isinstance(phase, Window | Carried):
             return self._is_curved or self._window.seconds >= self._schedule.next_search
+        if self._between.room < BLOCK_SAMPLES and self._window.seconds >= _MOVING:
+            return False
+        self._show()
         if is_window_full(phase, self._window.seconds, self._stream, self._schedule.intervals):
             return True
         moved = np.abs(self._snapshot.value - phase.estimate.value)
@@ -385,21 +435,14 @@ class OnlineEstimator:
         self._phase = following
         self._window.clear()
 
-    def _filter(self, phase: RecursivePhase, sample: Sample) -> None:
-        """Take a sample into the filter; one that has diverged is left."""
-        is_look_due = phase.add(sample.time, sample.values)
-        if is_look_due and not phase.is_sound:
-            self._leave_filter(phase)
-        elif self._is_changed_at(sample):
-            self._begin_anew()
-        else:
-            self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, phase)
-
     def _leave_filter(self, phase: RecursivePhase) -> None:
         """Go on with a window: with the filter's information, or from nowhere where it has diverged."""
         self._phase = phase.to_window()
         self._schedule.restart()
-        if isinstance(self._phase, WarmUp):
+        if isinstance(self._phase, Carried):
+            self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, phase)
+        else:
+            self._snapshot = first_snapshot(self._trial.model, self.change)
             self._watch = None
             self._change_detector.restart()
 
@@ -411,23 +454,14 @@ class OnlineEstimator:
         self._schedule.restart()
         self._snapshot = first_snapshot(self._trial.model, self._change_detector.detected)
 
-    def _is_changed_at(self, sample: Sample) -> bool:
-        """Take a sample into the filter that watches, and return whether it shows a change."""
-        if self._watch is None or not self._watch.add(sample.time, sample.values):
+    def _is_changed(self) -> bool:
+        """Whether the filter that watches shows a change with the latest sample."""
+        if self._watch is None or not self._watch.watch.is_ended:
             return False
         if self._watch.is_sound:
-            return self._change_detector.update(sample.time, self._watch.watch)
+            return self._change_detector.update(self._progress.last_time, self._watch.watch)
         self._watch = None  # the next search is compared with earlier ones
         return False
-
-    def _show_sample(self, between: RecursivePhase, sample: Sample) -> None:
-        """Take a sample into the filter behind the last search, and show its estimate."""
-        if between.add(sample.time, sample.values) and not between.is_sound:
-            self._between = None
-            return
-        estimate = between.estimate_by_now()
-        if estimate is not None:
-            self._snapshot = snapshot_of_now(self._snapshot, self._trial.model, estimate)
 
     def _compare_search(self, estimate: WindowEstimate) -> bool:
         """Compare a search with earlier ones where successive ones are nested; return whether it shows a change.
