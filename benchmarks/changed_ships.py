@@ -270,13 +270,13 @@ UNCHANGED = Change({}, instant=0.0)
 
 
 def alarms_of(made: Voyage) -> tuple[int, bool]:
-    """Alarms of a ship that stays as it is, those withdrawn not among them, and whether it is watched to the end."""
+    """Findings on a ship that stays as it is, but for those withdrawn, and whether it is watched to the end."""
     estimator, _, stream = follower()
     alarms, snapshot = dict[float, bool](), estimator.snapshot
     for sample in samples(made.record, stream):
         snapshot = estimator.update(sample)
         if snapshot.change is not None:
-            alarms[snapshot.change.reported_at] = snapshot.change.is_believed
+            alarms[snapshot.change.since] = snapshot.change.is_believed
     is_doubted = snapshot.change is not None and not snapshot.change.is_believed
     return sum(alarms.values()), not (snapshot.unwatched or is_doubted)
 

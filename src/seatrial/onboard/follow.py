@@ -246,10 +246,22 @@ def _process_stream(
             queue.extend(session.admit(source.poll(0.0 if queue else _POLL_WAIT_S)))
         deadline = monotonic() + _PROCESSING_S
         while queue:
-            session.process(queue.popleft())
+            _process_first(session, queue)
             if monotonic() > deadline:
                 break
     return False
+
+
+def _process_first(session: StreamSession, queue: deque[StreamEvent]) -> None:
+    """Process the first event that waits, and with a sample those behind it in its run, up to a block of them."""
+    block: list[Sample] = []
+    while queue and len(block) < session.block_size and isinstance(event := queue[0], Sample):
+        block.append(event)
+        queue.popleft()
+    if block:
+        session.process_samples(block)
+    else:
+        session.process(queue.popleft())
 
 
 def _open_stream(stack: ExitStack, stream: Stream, *, once: bool) -> SampleSource:

@@ -2,7 +2,7 @@
 
 import math
 from array import array
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from statistics import median
 from typing import Literal, Protocol
@@ -16,9 +16,8 @@ from seatrial.data.check import canonical_record
 from seatrial.data.read import Layout
 from seatrial.data.read.assemble import record_from_values
 from seatrial.data.trial import Role, Trial
-from seatrial.data.trial.runs import require_stream
 from seatrial.data.trial.settings import Stream
-from seatrial.data.trial.trial import Run
+from seatrial.estimation.identify.online import OnlineEstimator, stream_run
 from seatrial.onboard.journal import Journal, RunEntry
 from seatrial.onboard.proposer import GainProposer
 
@@ -203,8 +202,7 @@ def with_training_records(trial: Trial, records: tuple[Record, ...], *, has_chan
 
     has_changed: whether they are of another ship than its own training runs, which are then left out.
     """
-    waves = require_stream(trial).waves
-    came = tuple(Run(record, waves=waves) for record in records)
+    came = tuple(stream_run(trial, record) for record in records)
     others = tuple(run for run in trial.runs if run.role is not Role.TRAIN)
     return replace(trial, runs=(*(() if has_changed else trial.runs_with_role(Role.TRAIN)), *came, *others))
 
@@ -258,6 +256,9 @@ class RecentRun:
 
 # messages kept; chosen: more would only repeat the same trouble
 _MAX_MESSAGES = 20
+# samples processed at once where so many wait; chosen: a few milliseconds, and ten seconds at 10 Hz
+_MAX_BLOCK = 100
+_REFUSALS = (InputError, np.linalg.LinAlgError, ArithmeticError)
 # written into journals: not to be changed
 _RESTART_REASON = "followed again"
 
@@ -340,19 +341,46 @@ class StreamSession:
 
     def process(self, event: StreamEvent) -> None:
         """Update the estimate with an event; what the estimator refuses becomes a message, and the next may succeed."""
+        if not isinstance(event, RunStart):
+            self.process_samples([event])
+            return
         try:
-            if isinstance(event, RunStart):
-                self._start_run()
-                return
+            self._start_run()
+        except _REFUSALS as error:
+            self._note_refusal(event.time, error)
+
+    @property
+    def block_size(self) -> int:
+        """Number of samples that are processed at once, at most: one where something is made of each of them."""
+        is_single = self._proposer is not None or not isinstance(self._estimator, OnlineEstimator)
+        return 1 if is_single else _MAX_BLOCK
+
+    def process_samples(self, samples: Sequence[Sample]) -> None:
+        """Update the estimate with successive samples of a run, at most `block_size` at once."""
+        size = self.block_size
+        for first in range(0, len(samples), size):
+            block = samples[first : first + size]
+            try:
+                self._process_block(block)
+            except _REFUSALS as error:
+                self._note_refusal(block[-1].time, error)
+
+    def _process_block(self, block: Sequence[Sample]) -> None:
+        for sample in block:
             if self._buffer is not None:
-                self._buffer.add(event)
-            self.recent_run.add(event)
+                self._buffer.add(sample)
+            self.recent_run.add(sample)
             if self._proposer is not None:
-                self._proposer.add(event)
-            self.snapshot = self._estimator.update(event)
-        except (InputError, np.linalg.LinAlgError, ArithmeticError) as error:
-            self._estimator_error = f"t = {event.time:g} s: {error}"
-            self._add_message(str(error))
+                self._proposer.add(sample)
+        if isinstance(self._estimator, OnlineEstimator):
+            times, values = np.array([s.time for s in block]), np.array([s.values for s in block])
+            self.snapshot = self._estimator.update_block(times, values)
+        else:
+            self.snapshot = self._estimator.update(block[0])
+
+    def _note_refusal(self, time: float, error: Exception) -> None:
+        self._estimator_error = f"t = {time:g} s: {error}"
+        self._add_message(str(error))
 
     @property
     def proposal(self) -> Proposal | None:

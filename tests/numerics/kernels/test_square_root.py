@@ -59,7 +59,7 @@ def taken(root: Array, measured: Array, limit: float = 6.0) -> tuple[Array, Arra
     """z, running and tally after one sample of two channels predicted as 0, variances 1."""
     z, h, running, tally = np.zeros(N), np.eye(2, N), np.zeros((2, 2)), np.zeros((2, 2), dtype=np.int64)
     update_sample(root, z, z.copy(), h, np.zeros(2), measured, np.ones(2), limit, 100.0, running, tally, np.empty(N),
-                  np.empty((N, 0)), np.empty((0, 2, 2)), np.empty((0, 2)), np.empty(0), np.zeros((2, 4)))  # fmt: skip
+                  np.empty((N, 0)), np.empty((2, 2, 0)), np.empty((2, 0)), np.empty(0), np.zeros((2, 4)))  # fmt: skip
     return z, running, tally
 
 
@@ -91,7 +91,7 @@ def test_an_outlier_is_counted_and_its_pull_is_bounded(root: Array) -> None:
 def test_the_score_of_a_jump_is_that_of_the_innovations_it_would_leave(root: Array, rng: np.random.Generator) -> None:
     """z is measured 30 times; a jump of z[:2] before the first is estimated as from all innovations at once."""
     jump, truth, z, effects = np.array([0.8, -0.5]), rng.standard_normal(N), np.zeros(N), np.zeros((N, 2))
-    effects[:2], information, score = np.eye(2), np.zeros((1, 2, 2)), np.zeros((1, 2))
+    effects[:2], information, score = np.eye(2), np.zeros((2, 2, 1)), np.zeros((2, 1))
     P, rows = root @ root.T, rng.standard_normal((30, N))
     z[:] = truth + root @ rng.standard_normal(N)
     first, moved = z.copy(), truth + np.concatenate([jump, np.zeros(N - 2)])
@@ -103,21 +103,27 @@ def test_the_score_of_a_jump_is_that_of_the_innovations_it_would_leave(root: Arr
         update_scalar(root, z, v, total - 0.09, 0.09, y - h @ z)
     covariance = rows @ P @ rows.T + 0.09 * np.eye(30)
     slopes = np.linalg.solve(covariance, rows[:, :2])
-    np.testing.assert_allclose(information[0], rows[:, :2].T @ slopes, rtol=1e-8)
-    np.testing.assert_allclose(score[0], slopes.T @ (measured - rows @ first), rtol=1e-7, atol=1e-7)
+    np.testing.assert_allclose(information[:, :, 0], np.tril(rows[:, :2].T @ slopes), rtol=1e-8)
+    np.testing.assert_allclose(score[:, 0], slopes.T @ (measured - rows @ first), rtol=1e-7, atol=1e-7)
+
+
+def _set_evidence(J: Array, d: Array, variance: float, evidence: Array) -> None:
+    """By instants first, J (m, k, k) and d (m, k)."""
+    information, score = np.ascontiguousarray(np.moveaxis(J, 0, 2)), np.ascontiguousarray(d.T)
+    jump_evidence(information, score, variance, np.empty_like(information), np.empty_like(score), evidence)
 
 
 def test_evidence_is_a_mixture_of_all_coefficients_and_of_each_alone(rng: np.random.Generator) -> None:
     k, variance, slopes = 3, 0.0625, rng.standard_normal((4, 9, 3))
     J, d, evidence = np.einsum("mij,mik->mjk", slopes, slopes), 9.0 * rng.standard_normal((4, k)), np.empty(4)
-    jump_evidence(J, d, variance, evidence)
+    _set_evidence(J, d, variance, evidence)
     for m in range(4):
         own = J[m] + np.eye(k) / variance
         of_all = 0.5 * d[m] @ np.linalg.solve(own, d[m]) - 0.5 * np.linalg.slogdet(variance * own)[1]
         alone = 1.0 + variance * np.diagonal(J[m])
         of_each = 0.5 * variance * d[m] ** 2 / alone - 0.5 * np.log(alone)
         assert evidence[m] == pytest.approx(np.log(0.5 * np.exp(of_all) + 0.5 * np.mean(np.exp(of_each))), rel=1e-10)
-    jump_evidence(-1e6 * np.eye(k)[None], d[:1], variance, evidence[:1])
+    _set_evidence(-1e6 * np.eye(k)[None], d[:1], variance, evidence[:1])
     assert evidence[0] == -np.inf
 
 

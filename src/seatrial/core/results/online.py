@@ -111,7 +111,10 @@ class EstimatorPhase(StrEnum):
 
 @dataclass(frozen=True)
 class CoefficientChange:
-    """A change of the ship: what samples behind an instant say against those before (Willsky & Jones 1976)."""
+    """A change of the ship: what samples behind an instant say against those before (Willsky & Jones 1976).
+
+    Changes that follow one another closely, as along a ramp, are one: `since` and `before` are of the first.
+    """
 
     since: Annotated[Number, Field(description="s on the stream's clock, likeliest instant of the change")]
     between: Annotated[tuple[Number, Number], Field(description="s on the stream's clock, interval of that instant")]

@@ -56,8 +56,8 @@ def sincos(angle: float) -> tuple[float, float]:
 # The cubic spline through evenly spaced samples: its slopes, of which each piece is made, and points between.
 
 
-@kernel(void(MATRIX, MATRIX, VECTOR), **LEAN)
-def _slopes(u, slope, work):
+@njit(inline="always", **OPTIONS)
+def _spline_slopes(u, slope, work):
     n = u.shape[0]
     for j in range(u.shape[1]):
         if n < 4:
@@ -79,6 +79,31 @@ def _slopes(u, slope, work):
         slope[n - 1, j] = (last - 2.0 * slope[n - 2, j]) / (1.0 - 2.0 * work[n - 2])
         for i in range(n - 2, -1, -1):
             slope[i, j] -= work[i] * slope[i + 1, j]
+
+
+@kernel(void(MATRIX, MATRIX, VECTOR), **LEAN)
+def _slopes(u, slope, work):
+    _spline_slopes(u, slope, work)
+
+
+@kernel(void(MATRIX, I8, MATRIX, MATRIX, VECTOR), **LEAN)
+def _latest_slopes(u, history, latest, slope, work):
+    nu = u.shape[1]
+    for row in range(1, u.shape[0]):
+        first = max(row - history, 0)
+        _spline_slopes(u[first : row + 1], slope, work)
+        for j in range(nu):
+            latest[row, j], latest[row, nu + j] = slope[row - first - 1, j], slope[row - first, j]
+
+
+def latest_slopes(u, history):
+    """Return slopes at each row of u (n, columns) and at the one before it, of the spline through rows up to it alone.
+
+    history: rows before it that count. (n, 2 columns): first those of the row before; nothing of the first row.
+    """
+    latest = np.zeros((len(u), 2 * u.shape[1]))
+    _latest_slopes(u, history, latest, np.empty((history + 1, u.shape[1])), np.empty(history + 1))
+    return latest
 
 
 def spline_slopes(u):

@@ -2,7 +2,6 @@
 
 import math
 
-import numpy as np
 from numba import njit, void
 
 from seatrial.numerics.kernels.integrate import DIVERGED, rk4_tangent_step
@@ -58,22 +57,25 @@ def update_jumps(root, h, v, total, e, weight, effects, information, score, inno
 
     A jump of relative size d at instant m moves the error of z by effects_m d, so that an innovation moves by
     h' effects_m d: score += g e / total, information += g g' / total, g = effects_m' h, and effects_m -= K g', K the
-    gain (Willsky & Jones 1976, IEEE Trans. AC 21, 108). weight: 0 where it says nothing of a jump. effects (n, m k),
-    information (m, k, k), score (m, k), innovation_effects (m k,).
+    gain (Willsky & Jones 1976, IEEE Trans. AC 21, 108). weight: 0 where it says nothing of a jump. effects (n, k m),
+    instants fastest, as everywhere; information (k, k, m), lower triangle; score (k, m), innovation_effects (k m,).
     """
-    k = score.shape[1]
+    k, instants = score.shape
     for c in range(innovation_effects.size):
         innovation_effects[c] = 0.0
     for i in range(h.size):
         if h[i] != 0.0:
             for c in range(innovation_effects.size):
                 innovation_effects[c] += h[i] * effects[i, c]
-    for m in range(score.shape[0]):
-        for a in range(k):
-            g = weight * innovation_effects[m * k + a] / total
-            score[m, a] += g * e
-            for b in range(k):
-                information[m, a, b] += g * innovation_effects[m * k + b]
+    share = weight / total
+    for a in range(k):
+        for b in range(a + 1):
+            for m in range(instants):
+                information[a, b, m] += (
+                    share * innovation_effects[a * instants + m] * innovation_effects[b * instants + m]
+                )
+        for m in range(instants):
+            score[a, m] += share * e * innovation_effects[a * instants + m]
     for i in range(h.size):
         gain = 0.0
         for j in range(h.size):
@@ -152,13 +154,168 @@ def forget(root, z, floor_root, forgetting_factor, v):
         update_scalar(root, z, v, spread, 1.0 / (1.0 - forgetting_factor), 0.0)
 
 
+# Evidence for a jump, whose size has a Gaussian prior.
+
+
+@njit(inline="always", **OPTIONS)
+def _solve_jumps(information, score, prior_variance, root, solved):
+    """Set root (k, k, m) of J + I/P, lower, at each instant, and solved (k, m), root^-1 d; NaN where there is none."""
+    k, instants = score.shape
+    for a in range(k):
+        for m in range(instants):
+            solved[a, m] = score[a, m]
+        for b in range(a + 1):  # Cholesky by rows
+            own = 1.0 / prior_variance if a == b else 0.0
+            for m in range(instants):
+                root[a, b, m] = information[a, b, m] + own
+            for c in range(b):
+                for m in range(instants):
+                    root[a, b, m] -= root[a, c, m] * root[b, c, m]
+            if b < a:
+                for m in range(instants):
+                    root[a, b, m] /= root[b, b, m]
+                    solved[a, m] -= root[a, b, m] * solved[b, m]
+        for m in range(instants):
+            root[a, a, m] = math.sqrt(root[a, a, m])
+            solved[a, m] /= root[a, a, m]
+
+
+@njit(inline="always", **OPTIONS)
+def _mixture_evidence(information, score, prior_variance, root, solved, m):
+    """Return the evidence at instant m from what `_solve_jumps` made."""
+    k = score.shape[0]
+    of_all, highest, total = 0.0, -math.inf, 0.0
+    for a in range(k):
+        growth = 1.0 + prior_variance * max(information[a, a, m], 0.0)
+        alone = 0.5 * prior_variance * score[a, m] ** 2 / growth - 0.5 * math.log(growth)
+        if alone > highest:
+            total = total * math.exp(highest - alone) + 1.0
+            highest = alone
+        else:
+            total += math.exp(alone - highest)
+        of_all += 0.5 * solved[a, m] ** 2 - math.log(root[a, a, m]) - 0.5 * math.log(prior_variance)
+    mean_of_each = highest + math.log(total / k)
+    higher, lower = max(of_all, mean_of_each), min(of_all, mean_of_each)
+    mixture = higher + math.log(0.5 + 0.5 * math.exp(lower - higher))
+    return -math.inf if math.isnan(mixture) or math.isnan(of_all) else mixture
+
+
+@kernel(void(CUBE, MATRIX, F8, CUBE, MATRIX, VECTOR), **LEAN)
+def jump_evidence(information, score, prior_variance, root, solved, evidence):
+    """Set the evidence for a jump, nats, at each of m instants: a mixture over its size (Willsky & Jones 1976).
+
+    The jump is of all k coefficients together or of one alone, equally likely, each with this prior variance P:
+    1/2 d' (J + I/P)^-1 d - 1/2 log |I + P J| for information J (k, k, m), of which the lower triangle counts, and
+    score d (k, m). Nothing, minus infinity, where rounding leaves J + I/P without a root. root (k, k, m), solved
+    (k, m): room.
+    """
+    _solve_jumps(information, score, prior_variance, root, solved)
+    for m in range(score.shape[1]):
+        evidence[m] = _mixture_evidence(information, score, prior_variance, root, solved, m)
+
+
+@njit(inline="always", **OPTIONS)
+def _is_jump_likely(information, score, prior_variance, threshold, root, solved):
+    """Whether the evidence at any instant is above a threshold; it is below the larger of its quadratic forms."""
+    _solve_jumps(information, score, prior_variance, root, solved)
+    k, instants = score.shape
+    for m in range(instants):
+        of_all, of_one = 0.0, 0.0
+        for a in range(k):
+            of_all += 0.5 * solved[a, m] ** 2
+            growth = 1.0 + prior_variance * max(information[a, a, m], 0.0)
+            of_one = max(of_one, 0.5 * prior_variance * score[a, m] ** 2 / growth)
+        is_near = max(of_all, of_one) > threshold
+        if is_near and _mixture_evidence(information, score, prior_variance, root, solved, m) > threshold:
+            return True
+    return False
+
+
+# A bank of instants, at each of which a jump of the coefficients is looked for.
+
+CLOSE_SAMPLES = 8
+"""Up to whose age every instant is kept; of twice the age every second, and so on (chosen)."""
+
+LOOKS, STATE = 0, 1
+"""Where `progress` holds how many samples were looked at, and what became of the watch: nothing, or one of these."""
+CHANGED, UNSOUND = 1, 2
+
+
+@njit(inline="always", **OPTIONS)
+def _close_instant(effects, information, score, m):
+    k, instants = score.shape
+    for a in range(k):
+        score[a, m] = 0.0
+        for b in range(a + 1):
+            information[a, b, m] = 0.0
+        for i in range(effects.shape[0]):
+            effects[i, a * instants + m] = 0.0
+
+
+@njit(inline="always", **OPTIONS)
+def _drop_old_instants(effects, information, score, opened, look):
+    """Drop the instants that are too close to others at their age, and return a vacant place."""
+    vacant, doublings = -1, (opened.size - CLOSE_SAMPLES) * 2 // CLOSE_SAMPLES
+    for m in range(opened.size):
+        if opened[m] >= 0:
+            age = look - opened[m]
+            for doubling in range(doublings + 1):
+                is_single = doubling == doublings or opened[m] % (2 << doubling) != 0
+                if age == CLOSE_SAMPLES << doubling and is_single:
+                    _close_instant(effects, information, score, m)
+                    opened[m] = -1
+        if opened[m] < 0:
+            vacant = m
+    return vacant
+
+
+@njit(inline="always", **OPTIONS)
+def _watch_sample(
+    root, z, running_means, counts, memory, effects, information, score, room, solved, opened, known, bounds, limits,
+    progress,
+):  # fmt: skip
+    """Look for a jump at any instant of the bank, and keep the present one; True where the watch ends.
+
+    opened (m,): look at which an instant was kept, -1 where there is none; known (2 k, m): value and standard error of
+    the coefficients there. bounds (2, k): of the coefficients. limits: variance of a jump, threshold, relative standard
+    error up to which coefficients count as known, mean squared innovation beyond which the filter is unsound.
+    """
+    k, instants = score.shape
+    is_sound = True
+    for a in range(k):
+        is_sound = is_sound and bounds[0, a] <= z[a] <= bounds[1, a]
+    for channel in range(running_means.shape[0]):
+        is_filled = counts[USED, channel] >= 0.5 * memory
+        is_sound = is_sound and not (is_filled and running_means[channel, 0] > limits[3])
+    if not is_sound:
+        progress[STATE] = UNSOUND
+    elif _is_jump_likely(information, score, limits[0], limits[1], room, solved):
+        progress[STATE] = CHANGED
+    if progress[STATE] != 0:
+        return True
+    look = progress[LOOKS]
+    progress[LOOKS] = look + 1
+    place, is_known = _drop_old_instants(effects, information, score, opened, look), True
+    for a in range(k):
+        variance = 0.0
+        for j in range(z.size):
+            variance += root[a, j] * root[a, j]
+        known[a, place], known[k + a, place] = z[a], math.sqrt(variance)
+        is_known = is_known and known[k + a, place] <= limits[2] * abs(z[a])
+    if is_known:
+        opened[place] = look
+        for a in range(k):
+            effects[a, a * instants + place] = z[a] if z[a] != 0.0 else 1.0
+    return False
+
+
 # Coefficients and state of a run without process noise, estimated as the samples come.
 
 _GAUSSIAN_STATE = (VECTOR, MATRIX)
 _SAMPLES = (MATRIX, MATRIX, I8, I8)
 _NOISE = (VECTOR, F8, F8, MATRIX, TABLE)
 _FORGETTING = (MATRIX, F8, I8, INDEX)
-_JUMPS = (MATRIX, CUBE, MATRIX, VECTOR, MATRIX, MATRIX)
+_JUMPS = (MATRIX, CUBE, MATRIX, VECTOR, MATRIX, MATRIX, CUBE, MATRIX, INDEX, MATRIX, MATRIX, VECTOR, INDEX)
 _SCRATCH = (VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX)
 
 
@@ -197,7 +354,8 @@ def _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, sampl
 def filter_linear(
     de, dg, dc, dd, step_matrix, output_matrix, expansion_point, z, root, inputs, measured, first_row, is_run_start,
     slopes, variance, limit, memory, running_means, counts, floor_root, forgetting_factor, forget_every,
-    samples_since, effects, information, score, innovation_effects, latest, moved, v, z_reference, predicted, h, step,
+    samples_since, effects, information, score, innovation_effects, latest, moved, jump_root, solved,
+    opened, known, bounds, limits, progress, v, z_reference, predicted, h, step,
     work, w, x,
 ):  # fmt: skip
     """Process rows first_row.. of an affine model; return the row at which the state left all bounds, or -1.
@@ -205,10 +363,11 @@ def filter_linear(
     step_matrix (nx, nx + nw), output_matrix (ny, nx + nu + 1): the step and the outputs at `expansion_point`, columns
     state, then inputs; their derivatives by the coefficients, last axis: de (nx, nx, k), dg (nx, nw, k), dc (ny, nx,
     k), dd (ny, nu + 1, k). nw = 4 nu + 1: inputs at both ends of the step, their slopes a step at both ends, 1.
-    inputs, slopes, measured: a row a sample; is_run_start: 1 where row `first_row` is the first of a run. z and root
-    are those of the row before. variance (ny,) to counts and effects to latest: see `update_sample`; moved (nx, m k):
-    room for effects; floor_root, forgetting_factor: see `forget`, which is done every `forget_every` samples,
-    samples_since counting them.
+    inputs, slopes (2 nu: those of the row before, its own), measured: a row a sample; is_run_start: 1 where row
+    `first_row` is the first of a run. z and root are those of the row before. variance (ny,) to counts and effects to
+    progress: see `update_sample`, `_watch_sample`; moved (nx, k m): room for effects; floor_root, forgetting_factor:
+    see `forget`, which is done every `forget_every` samples, samples_since counting them. Where the watch ends its row
+    is returned, too.
     """
     k, nx, nu = expansion_point.size, x.size, inputs.shape[1]
     ny = variance.size
@@ -216,7 +375,7 @@ def filter_linear(
         if row > first_row or is_run_start == 0:
             for j in range(nu):
                 w[j], w[nu + j] = inputs[row - 1, j], inputs[row, j]
-                w[2 * nu + j], w[3 * nu + j] = slopes[row - 1, j], slopes[row, j]
+                w[2 * nu + j], w[3 * nu + j] = slopes[row, j], slopes[row, nu + j]
             w[4 * nu] = 1.0
             size = 0.0
             for i in range(nx):
@@ -269,6 +428,9 @@ def filter_linear(
         update_sample(root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts,
                       v, effects, information, score, innovation_effects, latest)  # fmt: skip
         _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, samples_since, v)
+        if opened.size > 0 and _watch_sample(root, z, running_means, counts, memory, effects, information, score,
+                                             jump_root, solved, opened, known, bounds, limits, progress):  # fmt: skip
+            return row
     return -1
 
 
@@ -283,7 +445,8 @@ def filter_linear(
 def filter_runge_kutta(
     f, g, dt, substeps, p, coefficient_index, select, z, root, inputs, measured, first_row,
     is_run_start, variance, limit, memory, running_means, counts, floor_root, forgetting_factor, forget_every,
-    samples_since, effects, information, score, innovation_effects, latest, moved, v, z_reference, predicted, h, step,
+    samples_since, effects, information, score, innovation_effects, latest, moved, jump_root, solved,
+    opened, known, bounds, limits, progress, v, z_reference, predicted, h, step,
     work, chain, direct, link_u, w, s, work_x, work_u, work_w, jac, entries, g_jac, g_value,
 ):  # fmt: skip
     """Process rows of any model by Runge-Kutta steps, inputs running straight between samples, as `sensitivity` has it.
@@ -347,43 +510,7 @@ def filter_runge_kutta(
         update_sample(root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts,
                       v, effects, information, score, innovation_effects, latest)  # fmt: skip
         _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, samples_since, v)
+        if opened.size > 0 and _watch_sample(root, z, running_means, counts, memory, effects, information, score,
+                                             jump_root, solved, opened, known, bounds, limits, progress):  # fmt: skip
+            return row
     return -1
-
-
-# Evidence for a jump, whose size has a Gaussian prior.
-
-
-@kernel(void(CUBE, MATRIX, F8, VECTOR), **OPTIONS)
-def jump_evidence(information, score, prior_variance, evidence):
-    """Set the evidence for a jump, nats, at each of m instants: a mixture over its size (Willsky & Jones 1976).
-
-    The jump is of all k coefficients together or of one alone, equally likely, each with this prior variance P:
-    1/2 d' (J + I/P)^-1 d - 1/2 log |I + P J| for information J (k, k) and score d (k,). Nothing, minus infinity, where
-    rounding leaves J + I/P without a root.
-    """
-    instants, k = score.shape
-    root, solved = np.empty((k, k)), np.empty(k)
-    for m in range(instants):
-        of_all, highest, total = 0.0, -math.inf, 0.0
-        for a in range(k):
-            growth = 1.0 + prior_variance * max(information[m, a, a], 0.0)
-            alone = 0.5 * prior_variance * score[m, a] ** 2 / growth - 0.5 * math.log(growth)
-            if alone > highest:
-                total = total * math.exp(highest - alone) + 1.0
-                highest = alone
-            else:
-                total += math.exp(alone - highest)
-            solved[a] = score[m, a]
-            for b in range(a + 1):  # Cholesky by rows, and its solution
-                pivot = information[m, a, b] + (1.0 / prior_variance if a == b else 0.0)
-                for c in range(b):
-                    pivot -= root[a, c] * root[b, c]
-                root[a, b] = pivot / root[b, b] if b < a else math.sqrt(pivot) if pivot > 0.0 else math.nan
-                if b < a:
-                    solved[a] -= root[a, b] * solved[b]
-            solved[a] /= root[a, a]
-            of_all += 0.5 * solved[a] ** 2 - math.log(root[a, a]) - 0.5 * math.log(prior_variance)
-        mean_of_each = highest + math.log(total / k)
-        higher, lower = max(of_all, mean_of_each), min(of_all, mean_of_each)
-        mixture = higher + math.log(0.5 + 0.5 * math.exp(lower - higher))
-        evidence[m] = -math.inf if math.isnan(mixture) or math.isnan(of_all) else mixture

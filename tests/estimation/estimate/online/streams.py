@@ -5,7 +5,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from seatrial.core.equations import Model
-from seatrial.estimation.estimate.online.recursive import Forgetting, GaussianState, RecursiveFilter
+from seatrial.estimation.estimate.online.recursive import (
+    NO_JUMP,
+    Forgetting,
+    GaussianState,
+    JumpSearch,
+    RecursiveFilter,
+)
 from seatrial.estimation.estimate.online.window import gaussian_state_from_fit
 from seatrial.estimation.problem.output_error import OutputError
 from seatrial.estimation.problem.segments import Segments, cut_segments
@@ -51,10 +57,10 @@ class SeaStream:
         return gaussian_state_from_fit(problem, found.solution.point, found.local, found.normal)
 
     def filter(self, belief: GaussianState, rows: int, forgetting: Forgetting | None = None,
-               instants: int = 0) -> RecursiveFilter:  # fmt: skip
+               jumps: JumpSearch = NO_JUMP) -> RecursiveFilter:  # fmt: skip
         """A filter that goes on after the first rows."""
         return RecursiveFilter(self.ship, NAMES, OUTPUTS, NOISE, DT, belief, recent_inputs=self.clean.inputs[:rows],
-                         forgetting=forgetting, instants=instants)  # fmt: skip
+                         forgetting=forgetting, jumps=jumps)  # fmt: skip
 
     def run_filter(self, recursive: RecursiveFilter, measured: Array, rows: int, block: int = 10) -> RecursiveFilter:
         """The filter after everything behind the first rows."""

@@ -10,7 +10,7 @@ from seatrial.estimation.estimate.online.change_detector import (
     ChangeDetector,
     FilterWatch,
     GaussianEstimate,
-    bank_size,
+    jump_search,
 )
 from seatrial.physics.simulate.linear import LinearBatch
 
@@ -77,16 +77,19 @@ def test_changes_in_a_row_are_the_models_misfit() -> None:
         assert detector.detected is not None
         assert detector.detected.is_believed == (k < 3)
     assert detector.is_ended
+    assert detector.detected is not None  # one finding, from the first to the last
+    assert (detector.detected.since, detector.detected.reported_at) == (0.0, 35.0)
+    assert detector.detected.before == {"a": 1.0}
     detector.update_search(50.0, GaussianEstimate(np.ones(1), known))
     assert not detector.update_search(55.0, GaussianEstimate(np.full(1, 1.3), 0.5 * known))
 
 
 def alarms(stream: SeaStream, measured: Array) -> list[tuple[float, CoefficientChange]]:
     """What a filter that watches from 60 s on tells up to the first change."""
-    made = stream.filter(stream.batch_state(measured, FIRST), FIRST, instants=bank_size(1.0 / DT))
+    made = stream.filter(stream.batch_state(measured, FIRST), FIRST, jumps=jump_search(1.0 / DT))
     detector, watch = ChangeDetector(NAMES), FilterWatch(made)
     for row in range(FIRST, len(measured)):
-        made.update(measured[row : row + 1], stream.clean.inputs[row : row + 1])
+        watch.update(np.array([row * DT]), measured[row : row + 1], stream.clean.inputs[row : row + 1])
         if detector.update(row * DT, watch):
             assert detector.detected is not None
             return [(row * DT, detector.detected)]

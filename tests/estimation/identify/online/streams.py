@@ -65,5 +65,5 @@ def window_of(stream: SeaStream, rows: slice) -> StreamWindow:
     window = StreamWindow(stream.trial)
     window.begin_run(1)
     for sample in samples(stream.record, stream.trial, rows):
-        window.add(sample)
+        window.add(np.array([sample.time]), sample.values[None])
     return window

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tests.estimation.identify.online.streams import feed, samples, sea_stream
 
-from seatrial.core.results.online import EstimatorPhase
+from seatrial.core.results.online import EstimatorPhase, Sample
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import Trial, load_trial
 from seatrial.data.trial.runs import require_stream
@@ -63,6 +63,30 @@ def test_at_every_sample_the_numbers_are_those_of_the_converged_batch(heading, s
         assert np.all(np.abs(snapshot.value - value) < 0.01 * error), sample.time
         compared += 1
     assert compared > 100
+
+
+@pytest.mark.parametrize("follow", [{}, {"batch_window_s": 40.0}, {"batch_window_s": 40.0, "forgetting_time_s": 60.0}])
+def test_blocks_of_samples_have_the_bits_of_samples_one_by_one(follow):
+    """In a window and behind it, an outage and a changed scale of the motions in them; blocks of any size."""
+    stream = sea_stream(135, 90.0, 5)
+    trial = replace(stream.trial, stream=replace(stream.trial.stream, **follow))
+    rows = samples(stream.record, trial)
+    times, values = np.array([r.time for r in rows]), np.array([r.values for r in rows])
+    values[300:320, -2:] = np.nan
+    values[700:, 0] *= 1.1
+    one_by_one, blocks, taken = OnlineEstimator(trial), OnlineEstimator(trial), 0
+    shown = [one_by_one.update(Sample(t, v)) for t, v in zip(times.tolist(), values, strict=True)]
+    for size in np.random.default_rng(1).integers(1, 120, 900):
+        snapshot = blocks.update_block(times[taken : taken + size], values[taken : taken + size])
+        taken = min(taken + int(size), len(times))
+        same = shown[taken - 1]
+        np.testing.assert_array_equal(snapshot.value, same.value)
+        np.testing.assert_array_equal(snapshot.standard_error, same.standard_error)
+        assert (snapshot.phase, snapshot.change, snapshot.noise) == (same.phase, same.change, same.noise)
+        assert (snapshot.time, snapshot.samples, snapshot.unwatched) == (same.time, same.samples, same.unwatched)
+        if taken == len(times):
+            break
+    assert shown[-1].change is not None
 
 
 def test_one_per_cent_is_reached_within_the_first_minute():

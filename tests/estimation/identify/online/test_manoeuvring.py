@@ -9,7 +9,7 @@ from tests.estimation.identify.online.streams import feed, sea_stream
 
 from seatrial.core.results import Fit
 from seatrial.core.results.online import EstimatorPhase, Snapshot
-from seatrial.core.values import Record
+from seatrial.core.values import Channel, Record
 from seatrial.data.trial import Role, Trial, load_trial
 from seatrial.data.trial.records import trim_to_decay_start
 from seatrial.data.trial.settings import Stream, StreamSource
@@ -91,6 +91,30 @@ def test_a_roll_decay_ends_at_the_batch_estimate():
     fit = identify(replace(trial, runs=estimator.raw_runs()))
     assert np.max(np.abs(_off(ended, fit))) < 0.01
     assert np.max(np.abs(_off(snapshot, fit))) < 1.5
+    truth = np.array([trial.truth[n] for n in ended.names])
+    assert np.all(np.abs(ended.value - truth) < 4.0 * ended.standard_error)
+
+
+def _held_before(record: Record, seconds: float, noise: float) -> Record:
+    """A decay of a ship that is held at its first angle for so long, with noise [rad]."""
+    rows, phi = round(seconds / record.dt), record["phi"]
+    held = phi[0] + noise * np.random.default_rng(1).standard_normal(rows)
+    time = record.time[0] + record.dt * np.arange(rows + len(phi))
+    return Record(record.name, time, {"phi": Channel.from_notation("phi", np.concatenate([held, phi]))})
+
+
+def test_a_ship_that_is_held_is_estimated_from_its_release_on():
+    trial, raw = _stream("fin_decay")
+    decay = trim_to_decay_start(raw)
+    held = _held_before(decay, 6.0, 5e-4)
+    estimator = OnlineEstimator(trial)
+    waiting = feed(estimator, held, trial, slice(0, round(9.0 / held.dt)))  # released for 3 s
+    assert waiting.phase is EstimatorPhase.WAITING
+    assert "may still be held" in waiting.advice
+    feed(estimator, held, trial, slice(round(9.0 / held.dt), None))
+    ended = estimator.relinearise()
+    fit = identify(replace(trial, runs=estimator.raw_runs()))
+    assert np.max(np.abs(_off(ended, fit))) < 0.01
     truth = np.array([trial.truth[n] for n in ended.names])
     assert np.all(np.abs(ended.value - truth) < 4.0 * ended.standard_error)
 

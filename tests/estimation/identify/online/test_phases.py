@@ -115,8 +115,10 @@ def test_a_repeated_search_uses_what_is_carried(stream):
 
 
 def test_breaks_between_runs_do_not_count_as_time():
-    progress = StreamProgress().with_run().with_sample(10.0).with_sample(10.5).with_run().with_sample(100.0)
-    progress = progress.with_sample(100.25)
+    progress = (
+        StreamProgress().with_run().with_samples(np.array([10.0, 10.5])).with_run().with_samples(np.array([100.0]))
+    )
+    progress = progress.with_samples(np.array([100.25]))
     assert (progress.samples, progress.runs) == (4, 2)
     assert progress.elapsed == 0.75
     assert progress.last_time == 100.25
@@ -128,7 +130,7 @@ def test_before_the_first_sample_start_values_are_shown_without_confidence():
     assert snapshot.phase is EstimatorPhase.WAITING
     np.testing.assert_array_equal(snapshot.value, [p.value for p in trial.model.parameters.free])
     assert np.all(np.isinf(snapshot.standard_error))
-    later = at_progress(snapshot, StreamProgress().with_run().with_sample(3.0))
+    later = at_progress(snapshot, StreamProgress().with_run().with_samples(np.array([3.0])))
     assert (later.time, later.samples, later.runs) == (3.0, 1, 1)
 
 
@@ -199,7 +201,10 @@ def test_correlated_residuals_discount_what_an_efficient_search_carries(stream, 
 
 def test_a_filter_that_is_left_hands_its_information_to_a_window(stream, window_phase):
     recursive = _filter(stream, window_phase)
-    moved = [recursive.add(s.time, s.values) for s in samples(stream.record, stream.trial, slice(500, 595))]
+    moved = []
+    for sample in samples(stream.record, stream.trial, slice(500, 595)):
+        recursive.take(np.array([sample.time]), sample.values[None])
+        moved.append(recursive.room == BLOCK_SAMPLES)
     assert sum(moved) == 95 // BLOCK_SAMPLES
     carried = recursive.to_window()
     assert isinstance(carried, Carried)
@@ -213,9 +218,9 @@ def test_a_filter_that_has_diverged_leads_back_to_warm_up(stream, window_phase):
     recursive = _filter(stream, window_phase)
     scale = np.array([1.0, 1.0, 1.0, 1e3, 1e3])
     for sample in samples(stream.record, stream.trial, slice(500, 600)):
-        recursive.add(sample.time, sample.values * scale)
+        recursive.take(np.array([sample.time]), sample.values[None] * scale)
     for sample in samples(stream.record, stream.trial, slice(0, 200)):
-        recursive.add(60.0 + sample.time, sample.values * scale)
+        recursive.take(np.array([60.0 + sample.time]), sample.values[None] * scale)
     assert not recursive.is_sound
     assert recursive.to_window() == WarmUp()
 
@@ -231,8 +236,8 @@ def test_rows_that_convert_linearly_are_mapped_and_others_not() -> None:
     matrix = np.array([[0.0, -1.0, 0.0], [2.0, 0.0, 0.5]])
     mapped = SampleMap.of_stream(lambda rows: rows @ matrix.T + [0.0, 3.0], 3)
     assert mapped is not None
-    np.testing.assert_allclose(mapped.apply(np.array([1.0, 2.0, 4.0])), [-2.0, 7.0])
-    missing = mapped.apply(np.array([1.0, np.nan, 4.0]))
+    np.testing.assert_allclose(mapped.apply(np.array([[1.0, 2.0, 4.0]])), [[-2.0, 7.0]])
+    (missing,) = mapped.apply(np.array([[1.0, np.nan, 4.0]]))
     assert np.isnan(missing[0]) and missing[1] == 7.0
     assert SampleMap.of_stream(lambda rows: rows @ matrix.T + rows[:, :1] ** 2, 3) is None
     assert SampleMap.of_stream(lambda rows: np.cumsum(rows, axis=0) @ matrix.T, 3) is None

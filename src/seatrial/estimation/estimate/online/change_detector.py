@@ -1,14 +1,14 @@
 """Whether and when a ship has changed: a bank of instants, and what the data since say of a change at each."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from seatrial.core.results.online import CoefficientChange
 from seatrial.core.values import Array
-from seatrial.estimation.estimate.online.recursive import RecursiveFilter
-from seatrial.numerics.kernels.recursive import jump_evidence
+from seatrial.estimation.estimate.online.recursive import JumpSearch, RecursiveFilter
+from seatrial.numerics.kernels.recursive import CLOSE_SAMPLES, jump_evidence
 
 # What the data after an instant say against those before it.
 
@@ -63,8 +63,9 @@ class _Moves:
     @property
     def evidence(self) -> Array:
         """Evidence for a change at each instant, nats, (m,), see `jump_evidence`."""
-        evidence = np.empty(len(self.score))
-        jump_evidence(self.information, self.score, SIZE**2, evidence)
+        information = np.ascontiguousarray(np.moveaxis(self.information, 0, 2))
+        score, evidence = np.ascontiguousarray(self.score.T), np.empty(len(self.score))
+        jump_evidence(information, score, SIZE**2, np.empty_like(information), np.empty_like(score), evidence)
         return evidence
 
 
@@ -81,66 +82,67 @@ class _Instant:
 
 
 # the bank of a filter: instants close to the present sample by sample, older ones ever farther apart
-_CLOSE = 8  # samples up to whose age every instant is kept; of twice the age every second, and so on; chosen
 _OLDEST = 400.0  # s, age of the oldest instant at least; chosen: what takes longer to show is no jump
 _KNOWN = 0.15  # relative standard error of every coefficient from which on an instant is kept; chosen
 
 
-def bank_size(rate: float) -> int:
-    """Return how many instants are kept at so many samples a second."""
-    doublings = max(int(np.ceil(np.log2(_OLDEST * rate / _CLOSE))), 0)
-    return _CLOSE + doublings * _CLOSE // 2
+def jump_search(rate: float) -> JumpSearch:
+    """Return what the filter of a `FilterWatch` looks for at so many samples a second."""
+    doublings = max(int(np.ceil(np.log2(_OLDEST * rate / CLOSE_SAMPLES))), 0)
+    return JumpSearch(CLOSE_SAMPLES + doublings * CLOSE_SAMPLES // 2, SIZE, THRESHOLD, _KNOWN)
 
 
-@dataclass(eq=False)
 class FilterWatch:
-    """Instants of a filter whose jumps of the coefficients are looked for.
+    """Samples taken in by a filter that looks for jumps of the coefficients, until it finds one.
 
-    Attributes:
-        recursive: the filter, with places for `bank_size` of them.
+    Args:
+        recursive: the filter, which looks for what `jump_search` says.
     """
 
-    recursive: RecursiveFilter
-    _looks: int = 0
-    _kept: dict[int, tuple[int, _Instant]] = field(default_factory=dict)  # by look: place in the filter, and instant
-    _vacant: list[int] = field(init=False)  # places in the filter
+    def __init__(self, recursive: RecursiveFilter) -> None:
+        self._filter = recursive
+        self._times = np.empty(len(recursive.jumps.opened))  # s, of the instants
 
-    def __post_init__(self) -> None:
-        self._vacant = list(range(len(self.recursive.jumps.score)))
+    def update(self, times: Array, measured: Array, inputs: Array) -> int:
+        """Take in the next n samples up to one that shows a jump, and return how many; times (n,), s.
+
+        Others as of `RecursiveFilter.update`.
+        """
+        if self._filter.is_halted:
+            return len(times)
+        jumps = self._filter.jumps
+        before = jumps.looks
+        self._filter.update(measured, inputs)
+        new = np.flatnonzero(jumps.opened >= before)
+        self._times[new] = times[jumps.opened[new] - before]
+        return jumps.looks - before + self._filter.is_halted if jumps.is_searched else len(times)
 
     @property
-    def is_suspicious(self) -> bool:
+    def is_ended(self) -> bool:
+        """Whether no more samples are taken in: there is a change, or the filter is no longer sound."""
+        return self._filter.is_halted
+
+    @property
+    def has_changed(self) -> bool:
         """Whether the evidence for a change at any instant is enough."""
-        jumps = self.recursive.jumps
-        return bool(np.max(_Moves(jumps.information, jumps.score).evidence) > THRESHOLD)
+        return self._filter.jumps.has_changed
 
     def kept(self) -> tuple[list[_Instant], _Moves]:
-        """Return the instants that are kept, and what the data say of a change at each."""
-        places, jumps = [place for place, _ in self._kept.values()], self.recursive.jumps
-        return [one for _, one in self._kept.values()], _Moves(jumps.information[places], jumps.score[places])
-
-    def keep(self, time: float) -> None:
-        """Keep the latest sample, at `time` [s], where the coefficients are known, and drop older ones."""
-        doublings = (len(self.recursive.jumps.score) - _CLOSE) * 2 // _CLOSE
-        for doubling in range(doublings + 1):
-            look = self._looks - (_CLOSE << doubling)
-            if look in self._kept and (doubling == doublings or look % (2 << doubling)):
-                place, _ = self._kept.pop(look)
-                self.recursive.jumps.close(place)
-                self._vacant.append(place)
-        value, error = self.recursive.value, self.recursive.standard_error
-        if np.all(error <= _KNOWN * np.abs(value)):
-            place = self._vacant.pop()
-            self.recursive.jumps.open(place, value)
-            self._kept[self._looks] = place, _Instant(time, value, error)
-        self._looks += 1
+        """Return the instants that are kept, in their order, and what the data say of a change at each."""
+        jumps, k = self._filter.jumps, len(self._filter.names)
+        places = np.argsort(jumps.opened)[np.count_nonzero(jumps.opened < 0) :]
+        known = jumps.known[:, places]
+        instants = [_Instant(float(t), v[:k], v[k:]) for t, v in zip(self._times[places], known.T, strict=True)]
+        lower = np.moveaxis(jumps.information[:, :, places], 2, 0)
+        whole = np.tril(lower) + np.swapaxes(np.tril(lower, -1), 1, 2)
+        return instants, _Moves(whole, jumps.score[:, places].T)
 
 
 # What is reported of both, and until when.
 
 _APART = 0.8  # of an earlier search's variances, to which another's have to fall to be compared with it; chosen
-_SOON, _MOST_IN_A_ROW = 60.0, 3  # s between changes that count as in a row, and how many a ship makes; chosen: a ramp
-# of a minute is found in three
+_SOON, _MOST_IN_A_ROW = 60.0, 3  # s from a report to a change that counts as one with it, and how many a ship makes;
+# chosen: a ramp of a minute is found in three
 _SPAN = 3.0  # nats below the likeliest instant down to which another is inside its interval: half of chi squared, 99 %
 
 
@@ -164,17 +166,14 @@ class ChangeDetector:
         return self._in_a_row > _MOST_IN_A_ROW
 
     def update(self, time: float, watch: FilterWatch) -> bool:
-        """Take in what a filter made of the sample at `time` [s], and return whether there is a change.
+        """Take in what a filter made of the samples up to `time` [s], and return whether there is a change.
 
         The estimate is then to begin anew, and so is the watch.
         """
-        if self.is_ended:
+        if self.is_ended or not watch.has_changed:
             return False
-        if watch.is_suspicious:
-            self._report(time, *watch.kept())
-            return True
-        watch.keep(time)
-        return False
+        self._report(time, *watch.kept())
+        return True
 
     def update_search(self, time: float, now: GaussianEstimate, *, is_kept: bool = True) -> bool:
         """Take in a search of all data up to `time` [s], and return whether there is a change since an earlier one.
@@ -206,7 +205,7 @@ class ChangeDetector:
         self._searches = ()
 
     def _report(self, time: float, instants: Sequence[_Instant], moves: _Moves) -> None:
-        """Report the change at the likeliest instant, unless it is that of a ship which changes all the time."""
+        """Report the change at the likeliest instant; of a ship which changes all the time none is believed."""
         nats = moves.evidence
         best = int(np.argmax(nats))
         likely = np.flatnonzero(nats >= nats[best] - _SPAN)
@@ -220,7 +219,22 @@ class ChangeDetector:
         change = CoefficientChange(
             instant.time, between, time, float(nats[best]), self.names[clearest], before, error_before
         )
-        is_soon = self.detected is not None and change.since - self.detected.since < _SOON
-        self._in_a_row = self._in_a_row + 1 if is_soon else 1
-        self.detected = replace(change, is_believed=not self.is_ended)
+        self._in_a_row = self._in_a_row + 1 if self._follows_closely(change) else 1
+        self.detected = self._joined(change) if self._in_a_row > 1 else change
         self.restart()
+
+    def _follows_closely(self, change: CoefficientChange) -> bool:
+        return self.detected is not None and change.since - self.detected.reported_at < _SOON
+
+    def _joined(self, change: CoefficientChange) -> CoefficientChange:
+        """One finding with the change that it follows closely: as a whole it is believed or it is not."""
+        first = self.detected
+        assert first is not None
+        clearest = max(first, change, key=lambda one: one.evidence)
+        return replace(
+            first,
+            reported_at=change.reported_at,
+            evidence=first.evidence + change.evidence,
+            most_changed=clearest.most_changed,
+            is_believed=first.is_believed and not self.is_ended,
+        )

@@ -10,9 +10,9 @@ import numpy as np
 
 from seatrial.core.equations import Model
 from seatrial.core.values import Array, Index, InputError
-from seatrial.numerics.kernels.integrate import spline_slopes, step_scratch, step_tables
+from seatrial.numerics.kernels.integrate import latest_slopes, spline_slopes, step_scratch, step_tables
 from seatrial.numerics.kernels.kernel import TangentPointer
-from seatrial.numerics.kernels.recursive import filter_linear, filter_runge_kutta
+from seatrial.numerics.kernels.recursive import CHANGED, LOOKS, STATE, filter_linear, filter_runge_kutta
 from seatrial.physics.simulate.batch import SegmentBatch
 from seatrial.physics.simulate.linear import SUBSTEPS, DiscreteMatrices, discrete_matrices
 
@@ -83,11 +83,34 @@ def covariance_root(covariance: Array, name: str) -> Array:
 LOOK_AHEAD = 6
 """Samples that a smooth input is known ahead of its step: a spline's end is felt by 4e-4 of itself there."""
 
+_HISTORY_SAMPLES = 12  # inputs kept before the sample in work, for the spline; chosen
 _MAX_MOVE_ERRORS = 0.2  # standard errors; see `ExactStepper`; chosen
 _MAX_MOVE_SHARE = 0.01  # share of the coefficient; see `ExactStepper`; chosen
 
 # of `follow_linear`: de, dg, dc, dd, plant, seen, at
 _Linearisation = tuple[Array, Array, Array, Array, Array, Array, Array]
+
+
+@dataclass(frozen=True)
+class JumpSearch:
+    """What a filter looks for at a bank of instants, and until when.
+
+    Attributes:
+        instants: most of them; with any, no sample waits for later ones, and a smooth input's last slope is of earlier
+            ones alone.
+        size: standard deviation of a jump before any data, relative to the coefficient.
+        threshold: nats of evidence that end the search for one.
+        known: relative standard error of every coefficient up to which an instant is kept.
+    """
+
+    instants: int = 0
+    size: float = 0.0
+    threshold: float = np.inf
+    known: float = 0.0
+
+
+NO_JUMP = JumpSearch()
+"""No jump is looked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,10 +120,13 @@ class JumpBank:
     The state, of nx, goes on from its value there. Sizes are relative to the coefficients of the instant.
 
     Attributes:
-        effects: of a jump on the error of [coefficients | state], (k + nx, m k).
-        information: on its size, (m, k, k); score: (m, k), information times the likeliest size.
-        innovation_effects, propagated: room for `kernels.recursive`, (m k,) and (nx, m k).
+        effects: of a jump on the error of [coefficients | state], (k + nx, k m).
+        information: on its size, (k, k, m), lower triangle; score: (k, m), information times the likeliest size.
+        innovation_effects, propagated, root, solved: room for `kernels.recursive`.
         latest: innovations of each channel, (ny, 4).
+        opened: look at which each instant was kept, (m,); -1: none is in that place.
+        known: value and standard error of the coefficients there, (2 k, m); bounds: of the coefficients, (2, k).
+        limits, progress: see `kernels.recursive`.
     """
 
     effects: Array
@@ -109,36 +135,58 @@ class JumpBank:
     innovation_effects: Array
     latest: Array
     propagated: Array
+    root: Array
+    solved: Array
+    opened: Index
+    known: Array
+    bounds: Array
+    limits: Array
+    progress: Index
 
     @classmethod
-    def of_size(cls, instants: int, coefficients: int, states: int, outputs: int) -> Self:
-        """Return a bank of so many instants, at none of which a jump is looked for yet."""
-        m, k, width = instants, coefficients, instants * coefficients
+    def of_size(cls, search: JumpSearch, states: int, outputs: int, bounds: Array, divergence_ratio: float) -> Self:
+        """Return a bank, at no instant of which a jump is looked for yet."""
+        m, k = search.instants, bounds.shape[1]
         return cls(
-            np.zeros((k + states, width)), np.zeros((m, k, k)), np.zeros((m, k)), np.zeros(width),
-            np.zeros((outputs, 4)), np.zeros((states, width)),
+            np.zeros((k + states, k * m)), np.zeros((k, k, m)), np.zeros((k, m)), np.zeros(k * m),
+            np.zeros((outputs, 4)), np.zeros((states, k * m)), np.zeros((k, k, m)), np.zeros((k, m)),
+            np.full(m, -1, dtype=np.int64), np.zeros((2 * k, m)), bounds,
+            np.array([search.size**2, search.threshold, search.known, divergence_ratio]), np.zeros(2, dtype=np.int64),
         )  # fmt: skip
 
     @property
-    def arrays(self) -> tuple[Array, Array, Array, Array, Array, Array]:
+    def arrays(self) -> tuple[Array | Index, ...]:
         """All of them, as the kernels take them."""
-        return self.effects, self.information, self.score, self.innovation_effects, self.latest, self.propagated
+        return (
+            self.effects, self.information, self.score, self.innovation_effects, self.latest, self.propagated,
+            self.root, self.solved, self.opened, self.known, self.bounds, self.limits, self.progress,
+        )  # fmt: skip
+
+    @property
+    def is_searched(self) -> bool:
+        """Whether jumps are looked for."""
+        return self.opened.size > 0
+
+    @property
+    def looks(self) -> int:
+        """Number of samples after which the present instant was kept."""
+        return int(self.progress[LOOKS])
+
+    @property
+    def has_changed(self) -> bool:
+        """Whether the evidence for a jump was enough; no sample behind that one has been taken in."""
+        return bool(self.progress[STATE] == CHANGED)
 
     def emptied(self) -> Self:
         """Return a bank of no instant."""
-        return self.of_size(0, self.score.shape[1], len(self.propagated), len(self.latest))
-
-    def open(self, place: int, value: Array) -> None:
-        """Put the present instant, at which the coefficients are `value` (k,), in the place of another."""
-        k = self.score.shape[1]
-        self.close(place)
-        self.effects[:k, place * k : (place + 1) * k] = np.diag(np.where(value == 0.0, 1.0, value))
-
-    def close(self, place: int) -> None:
-        """Look for no jump at the instant in that place any longer: there is no evidence for it."""
-        k = self.score.shape[1]
-        self.effects[:, place * k : (place + 1) * k] = 0.0
-        self.information[place], self.score[place] = 0.0, 0.0
+        k = self.bounds.shape[1]
+        none = np.zeros((k, 0)), np.zeros((k, k, 0))
+        return replace(
+            self, effects=np.zeros((len(self.effects), 0)), information=none[1], score=none[0],
+            innovation_effects=np.zeros(0), latest=np.zeros_like(self.latest),
+            propagated=np.zeros((len(self.propagated), 0)), root=none[1], solved=none[0],
+            opened=np.zeros(0, dtype=np.int64), known=np.zeros((2 * k, 0)), progress=np.zeros(2, dtype=np.int64),
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -271,7 +319,7 @@ class ExactStepper:
 
     def run(self, filter_state: FilterState, inputs: Array, measured: Array, first: int, is_run_start: int) -> int:
         """As `Stepping.run`."""
-        slopes, row = spline_slopes(inputs), first
+        slopes, row = self._input_slopes(inputs, is_causal=filter_state.jumps.is_searched), first
         while row < len(measured):
             made = self._linearise(filter_state)
             until = min(row + self.CHECK_ROWS - self._rows_since_check, len(measured))
@@ -290,6 +338,13 @@ class ExactStepper:
                 until,
             )
         return -1
+
+    def _input_slopes(self, inputs: Array, *, is_causal: bool) -> Array:
+        """Slopes of the inputs at the row before each and there; is_causal: from rows up to it alone."""
+        if is_causal:
+            return latest_slopes(inputs, _HISTORY_SAMPLES)
+        slopes = spline_slopes(inputs)
+        return np.hstack([np.concatenate([slopes[:1], slopes[:-1]]), slopes])
 
     def _linearise(self, filter_state: FilterState) -> _Linearisation:
         if self._linearisation is not None and (self._is_fixed or self._rows_since_check):
@@ -351,7 +406,6 @@ def stepper_for(model: Model, names: tuple[str, ...], outputs: tuple[str, ...], 
     return (ExactStepper if model.is_affine else RungeKuttaStepper)(model, names, outputs, dt, substeps)
 
 
-_HISTORY_SAMPLES = 12  # inputs kept before the sample in work, for the spline; chosen
 _FORGETTING_STEPS = 200  # forgetting acts so many times in a time constant; chosen
 
 
@@ -432,7 +486,7 @@ class RecursiveFilter:
         substeps: int = 1,
         forgetting: Forgetting | None = None,
         guard: DivergenceGuard | None = None,
-        instants: int = 0,
+        jumps: JumpSearch = NO_JUMP,
     ) -> None:
         """Carry `belief` on.
 
@@ -443,8 +497,7 @@ class RecursiveFilter:
             dt: s between samples.
             recent: the run's latest inputs up to the present sample, (m, nu), m >= 1, in the model's signs, a dozen if
                 there are. None: the belief stands before a run's first sample, which comes next.
-            instants: most at which jumps of the coefficients are looked for; then no sample waits for later ones, and
-                a smooth input's last slope is of earlier ones alone.
+            jumps: of the coefficients, that are looked for.
 
         Raises:
             InputError: names the model does not have, or shapes that do not agree.
@@ -463,8 +516,11 @@ class RecursiveFilter:
         self._stepper = stepper_for(model, self.names, self.outputs, dt, substeps)
         bounds = [model.parameters[n] for n in self.names]
         self._lower, self._upper = np.array([b.lower for b in bounds]), np.array([b.upper for b in bounds])
-        self.jumps = JumpBank.of_size(instants, len(self.names), len(model.states), len(self.outputs))
-        self._look_ahead = 0 if instants else self._stepper.look_ahead
+        self.jumps = JumpBank.of_size(
+            jumps, len(model.states), len(self.outputs), np.array([self._lower, self._upper]),
+            self._guard.divergence_ratio,
+        )  # fmt: skip
+        self._look_ahead = 0 if jumps.instants else self._stepper.look_ahead
         self._filter_state = _initial_filter_state(
             initial, np.asarray(noise, dtype=np.float64), dt, self._guard, forgetting or Forgetting(), self.jumps
         )
@@ -582,6 +638,11 @@ class RecursiveFilter:
         )
 
     @property
+    def is_halted(self) -> bool:
+        """Whether nothing more is taken in: the state has left all bounds, or a jump ended the search for one."""
+        return self._buffer.failed
+
+    @property
     def is_sound(self) -> bool:
         """Whether the filter may be believed; if not, a window of the latest samples has to be fitted again.
 
@@ -589,7 +650,9 @@ class RecursiveFilter:
         a channel are larger than believed (`Guard.unsound`) while its mean covers half the guard's memory.
         """
         h = self._filter_state
-        if self._buffer.failed or not (np.all(np.isfinite(h.z)) and np.all(np.isfinite(h.root))):
+        if (self._buffer.failed and not self.jumps.has_changed) or not (
+            np.all(np.isfinite(h.z)) and np.all(np.isfinite(h.root))
+        ):
             return False
         value = h.z[: len(self.names)]
         if np.any(value < self._lower) or np.any(value > self._upper):

@@ -9,7 +9,14 @@ from seatrial.core.equations import Model
 from seatrial.core.values import Array, InputError, Record
 from seatrial.data.trial import EstimateSettings
 from seatrial.estimation.estimate.assemble import Runs, output_error_problem
-from seatrial.estimation.estimate.online.recursive import DivergenceGuard, Forgetting, GaussianState, RecursiveFilter
+from seatrial.estimation.estimate.online.recursive import (
+    NO_JUMP,
+    DivergenceGuard,
+    Forgetting,
+    GaussianState,
+    JumpSearch,
+    RecursiveFilter,
+)
 from seatrial.estimation.estimate.point_estimate import PointEstimate, residual_correlation, residual_spread
 from seatrial.estimation.estimate.settings import WHITE_INFLATION, resolved_time, weak_form_half_width
 from seatrial.estimation.estimate.start import find_start
@@ -33,13 +40,15 @@ class SampleRows:
     def __len__(self) -> int:
         return self._count
 
-    def add(self, time: float, values: Array) -> None:
-        """One row more."""
-        if self._count == len(self._time):
-            self._time = np.concatenate([self._time, np.empty(self._count)])
-            self._values = np.concatenate([self._values, np.empty_like(self._values)])
-        self._time[self._count], self._values[self._count] = time, values
-        self._count += 1
+    def add(self, times: Array, values: Array) -> None:
+        """Rows more: times (n,), values (n, width)."""
+        count = self._count + len(times)
+        if count > len(self._time):
+            more = max(self._count, len(times))
+            self._time = np.concatenate([self._time, np.empty(more)])
+            self._values = np.concatenate([self._values, np.empty((more, self._values.shape[1]))])
+        self._time[self._count : count], self._values[self._count : count] = times, values
+        self._count = count
 
     @property
     def time(self) -> Array:
@@ -158,13 +167,13 @@ def filter_from_fit(
     forgetting: Forgetting | None = None,
     guard: DivergenceGuard | None = None,
     noise_excess: float = 1.0,
-    instants: int = 0,
+    jumps: JumpSearch = NO_JUMP,
 ) -> RecursiveFilter:
     """Return the filter that continues after the fit's last sample; `normal` as for `gaussian_state_from_fit`.
 
     Its noise is the fit's, coloured channels counted as the fit counts them, of `noise_excess` times the variance; an
     innovation is cut where the fit's loss is (`DivergenceGuard` where that is square). See `curvature` for whether the
-    fit is good enough, and `RecursiveFilter` for the `instants`.
+    fit is good enough, and `JumpSearch` for the `jumps`.
 
     Raises:
         InputError: the records do not identify every coefficient, or the fit corrects inputs or has a current, which a
@@ -194,7 +203,7 @@ def filter_from_fit(
         substeps=problem.substeps,
         forgetting=forgetting,
         guard=guard,
-        instants=instants,
+        jumps=jumps,
     )
 
 

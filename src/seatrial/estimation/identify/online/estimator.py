@@ -4,15 +4,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from seatrial.core.equations import Model
 from seatrial.core.results.online import CoefficientChange, Sample, Snapshot
 from seatrial.core.values import Array, InputError, Record
+from seatrial.data.check.phases import begins_before_release, is_free_decay
 from seatrial.data.read.assemble import record_from_values
-from seatrial.data.trial import Role, Run, Trial
+from seatrial.data.trial import Role, Run, Trial, Trimming
 from seatrial.data.trial.records import load_run
 from seatrial.data.trial.runs import require_stream
+from seatrial.estimation.estimate.criterion_choice import is_explained
 from seatrial.estimation.estimate.online.change_detector import ChangeDetector, GaussianEstimate
 from seatrial.estimation.estimate.online.window import SampleRows, WindowEstimate
 from seatrial.estimation.identify.online.phases import (
+    BLOCK_SAMPLES,
     CONTINUED_INTERVALS,
     REPEATED_INTERVALS,
     Carried,
@@ -40,6 +44,17 @@ from seatrial.estimation.identify.online.phases import (
 
 # a run of fewer samples is left out: no slope can be taken from it
 MIN_RUN_SAMPLES = 3
+
+
+def stream_run(trial: Trial, raw_record: Record) -> Run:
+    """Return a run of the trial's stream, as received, as a training run; one held before its release begins there."""
+    is_held = _is_undriven(trial.model, raw_record) and begins_before_release(raw_record)
+    return Run(raw_record, waves=require_stream(trial).waves, trimming=Trimming(from_release=is_held))
+
+
+def _is_undriven(model: Model, record: Record) -> bool:
+    """Whether nothing is recorded that moves a model which swings, so that it can only be released."""
+    return not model.has_course and not {*model.input_names} & {*record.channels}
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,15 +118,15 @@ class StreamWindow:
         self._closed_seconds += ended.rows.duration
         self._closed_samples += len(ended.rows)
 
-    def add(self, sample: Sample) -> None:
-        """Append a sample to the present run.
+    def add(self, times: Array, values: Array) -> None:
+        """Append samples to the present run: times (n,), s, values (n, columns).
 
         Raises:
             RuntimeError: no run has begun.
         """
         if self._open is None:
             raise RuntimeError("a sample came before a run began; call begin_run first")
-        self._open.rows.add(sample.time, sample.values)
+        self._open.rows.add(times, values)
 
     def clear(self) -> None:
         """Forget all samples and the trial's own records; the present run goes on."""
@@ -130,7 +145,8 @@ class StreamWindow:
 
     def training_runs(self) -> tuple[Run, ...]:
         """Return the stream's runs kept, as received, as training runs of a trial."""
-        return tuple(self._training_run(raw) for raw in (*(raw for raw, _ in self._closed), *self._present_record()))
+        raw_records = (*(raw for raw, _ in self._closed), *self._present_record())
+        return tuple(stream_run(self._trial, raw) for raw in raw_records)
 
     def _empty_run(self, number: int) -> _StreamRun:
         return _StreamRun(number, SampleRows(len(self._stream.layout.columns)))
@@ -145,11 +161,8 @@ class StreamWindow:
         name = self._stream.name if run.number <= 1 else f"{self._stream.name}_{run.number}"
         return record_from_values(name, self._stream.layout, run.rows.time, run.rows.values)
 
-    def _training_run(self, raw_record: Record) -> Run:
-        return Run(raw_record, waves=self._stream.waves)
-
     def _canonical_record(self, raw_record: Record) -> Record:
-        record = load_run(self._training_run(raw_record), self._trial.reference_point).record
+        record = load_run(stream_run(self._trial, raw_record), self._trial.reference_point).record
         rate = self._trial.estimate.rate
         return record if rate is None else record.resampled(rate)
 
@@ -164,6 +177,8 @@ _NOTHING_FREE = "every coefficient of the model is fixed: none is estimated"
 _UNWATCHED = "Changes are not watched: the residuals are not white, so that the model or its inputs are off."
 _UNEXPLAINED = 20.0  # s of coloured residuals before which a change that explains them is seen; chosen
 _SHOWN, _YOUNG = 0.3, 20.0  # relative standard errors below which numbers say something; s of a window; chosen
+_UNRELEASED = "the motion does not die out from a release yet, and no initial state explains it: it may still be held"
+_MOVING = 60.0  # s of a window, up to which an estimate moves so much within a block that each sample decides; chosen
 _NO_MODEL_YET = "the samples so far lead to no model that can be simulated"
 
 
@@ -216,30 +231,78 @@ class OnlineEstimator:
 
     def update(self, sample: Sample) -> Snapshot:
         """Take in one sample, later than the last, and return the estimate by now."""
+        return self.update_block(np.array([sample.time]), sample.values[None])
+
+    def update_block(self, times: Array, values: Array) -> Snapshot:
+        """Take in samples of one run, later than the last, and return the estimate by now.
+
+        The estimate has the bits that it has behind the same samples one by one.
+
+        Args:
+            times: s on the stream's clock, (n,); values: a row a sample, as the stream's layout has them, (n, columns).
+        """
         if not self._window.has_run:
             self.begin_run()
-        self._progress = self._progress.with_sample(sample.time)
         if not self._trial.model.parameters.free_names:
-            self._snapshot = at_progress(self._snapshot, self._progress)
-            return self._snapshot
-        if isinstance(self._phase, RecursivePhase):
-            self._filter(self._phase, sample)
-        else:
-            self._window.add(sample)
-            if self._between is not None:
-                self._show_sample(self._between, sample)
-            if self._is_changed_at(sample):
-                self._begin_anew()
-            elif self._is_search_due() and self._window.open_samples >= MIN_RUN_SAMPLES:
-                self.relinearise()
+            self._progress = self._progress.with_samples(times)
+        taken, watched, watch = 0, 0, None  # samples taken in, and by which watch ahead of them
+        while taken < len(times) and self._trial.model.parameters.free_names:
+            if self._watch is not watch or watched <= taken:
+                watch = self._watch
+                watched = len(times) if watch is None else taken + watch.take(times[taken:], values[taken:])
+            until = min(watched, taken + self._samples_to_decision())
+            self._take(times[taken:until], values[taken:until], is_watch_ended=until == watched)
+            taken = until
+        self._show()
         self._snapshot = at_progress(self._snapshot, self._progress)
         return self._snapshot
+
+    def _samples_to_decision(self) -> int:
+        """Number of samples up to the next at which it is decided how to go on, at most."""
+        if isinstance(self._phase, RecursivePhase):
+            return self._phase.room
+        return 1 if self._between is None or self._window.seconds < _MOVING else self._between.room
+
+    def _take(self, times: Array, values: Array, *, is_watch_ended: bool) -> None:
+        """Take in samples up to the next decision; is_watch_ended: whether the watch may end with the last of them."""
+        self._progress = self._progress.with_samples(times)
+        phase = self._phase
+        if isinstance(phase, RecursivePhase):
+            phase.take(times, values)
+            if phase.room == BLOCK_SAMPLES and not phase.is_sound:
+                self._leave_filter(phase)
+            elif is_watch_ended and self._is_changed():
+                self._begin_anew()
+            return
+        self._window.add(times, values)
+        if self._between is not None:
+            self._between.take(times, values)
+            if self._between.room == BLOCK_SAMPLES and not self._between.is_sound:
+                self._between = None
+                assert not isinstance(phase, WarmUp)
+                self._snapshot = window_snapshot(self._snapshot, self._trial.model, phase, phase.estimate)
+        if is_watch_ended and self._is_changed():
+            self._begin_anew()
+        elif self._is_search_due() and self._window.open_samples >= MIN_RUN_SAMPLES:
+            self.relinearise()
+
+    def _show(self) -> None:
+        """Show the estimate of all samples so far."""
+        if isinstance(self._phase, RecursivePhase):
+            self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, self._phase)
+        elif self._between is not None:
+            estimate = self._between.estimate_by_now()
+            if estimate is not None:
+                self._snapshot = snapshot_of_now(self._snapshot, self._trial.model, estimate)
 
     def _is_search_due(self) -> bool:
         """Whether the window is to be searched: the filter beside it has moved too far, or where there is none, now."""
         phase = self._phase
         if self._between is None or not isinstance(phase, Window | Carried):
             return self._is_curved or self._window.seconds >= self._schedule.next_search
+        if self._between.room < BLOCK_SAMPLES and self._window.seconds >= _MOVING:
+            return False
+        self._show()
         if is_window_full(phase, self._window.seconds, self._stream, self._schedule.intervals):
             return True
         moved = np.abs(self._snapshot.value - phase.estimate.value)
@@ -292,10 +355,15 @@ class OnlineEstimator:
         seconds = self._window.seconds
         self._schedule.note_search(seconds, is_carried=isinstance(phase, Carried))
         if self._window.samples >= _MIN_SAMPLES:
+            records = list[Record]()
             try:
+                records = self._window.records()
                 with np.errstate(all="ignore"):  # a trial step may overflow; the search then takes another
                     near = None if self._between is None else self._snapshot.value
-                    estimate = self._search.estimate(phase, self._window.records(), near)
+                    estimate = self._search.estimate(phase, records, near)
+                if self._is_unreleased(records, estimate):
+                    self._wait_for_release(records)
+                    return
                 if self._watch is None and self._compare_search(estimate):
                     self._begin_anew()
                     return
@@ -309,9 +377,24 @@ class OnlineEstimator:
             except (InputError, np.linalg.LinAlgError) as error:
                 if isinstance(phase, WarmUp):
                     reason = str(error) if isinstance(error, InputError) else _NO_MODEL_YET
+                    reason = _UNRELEASED if records and self._has_no_release(records[-1]) else reason
                     self._snapshot = replace(self._snapshot, advice=reason)
         if not isinstance(phase, WarmUp) and is_window_full(phase, seconds, self._stream, self._schedule.intervals):
             self._leave_window(phase)
+
+    def _is_unreleased(self, records: list[Record], estimate: WindowEstimate) -> bool:
+        """Whether the present run has no release, and no initial state explains it."""
+        return self._has_no_release(records[-1]) and (estimate.is_coloured or not is_explained(estimate.estimate))
+
+    def _has_no_release(self, record: Record) -> bool:
+        """Whether nothing is recorded that moves the ship, and it does not roll out either."""
+        return _is_undriven(self._trial.model, record) and not is_free_decay(record)
+
+    def _wait_for_release(self, records: list[Record]) -> None:
+        """Keep the estimate of the runs before the present one; of this one alone there is none."""
+        if len(records) == 1 and not isinstance(self._phase, Carried):
+            self._phase, self._between, self._watch = WarmUp(), None, None
+            self._snapshot = replace(first_snapshot(self._trial.model, self.change), advice=_UNRELEASED)
 
     def _note_colour(self, *, is_coloured: bool) -> None:
         """Watch no longer, and say so, where residuals stay coloured without a change that would explain it."""
@@ -352,21 +435,14 @@ class OnlineEstimator:
         self._phase = following
         self._window.clear()
 
-    def _filter(self, phase: RecursivePhase, sample: Sample) -> None:
-        """Take a sample into the filter; one that has diverged is left."""
-        is_look_due = phase.add(sample.time, sample.values)
-        if is_look_due and not phase.is_sound:
-            self._leave_filter(phase)
-        elif self._is_changed_at(sample):
-            self._begin_anew()
-        else:
-            self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, phase)
-
     def _leave_filter(self, phase: RecursivePhase) -> None:
         """Go on with a window: with the filter's information, or from nowhere where it has diverged."""
         self._phase = phase.to_window()
         self._schedule.restart()
-        if isinstance(self._phase, WarmUp):
+        if isinstance(self._phase, Carried):
+            self._snapshot = recursive_snapshot(self._snapshot, self._trial.model, phase)
+        else:
+            self._snapshot = first_snapshot(self._trial.model, self.change)
             self._watch = None
             self._change_detector.restart()
 
@@ -378,23 +454,14 @@ class OnlineEstimator:
         self._schedule.restart()
         self._snapshot = first_snapshot(self._trial.model, self._change_detector.detected)
 
-    def _is_changed_at(self, sample: Sample) -> bool:
-        """Take a sample into the filter that watches, and return whether it shows a change."""
-        if self._watch is None or not self._watch.add(sample.time, sample.values):
+    def _is_changed(self) -> bool:
+        """Whether the filter that watches shows a change with the latest sample."""
+        if self._watch is None or not self._watch.watch.is_ended:
             return False
         if self._watch.is_sound:
-            return self._change_detector.update(sample.time, self._watch.watch)
+            return self._change_detector.update(self._progress.last_time, self._watch.watch)
         self._watch = None  # the next search is compared with earlier ones
         return False
-
-    def _show_sample(self, between: RecursivePhase, sample: Sample) -> None:
-        """Take a sample into the filter behind the last search, and show its estimate."""
-        if between.add(sample.time, sample.values) and not between.is_sound:
-            self._between = None
-            return
-        estimate = between.estimate_by_now()
-        if estimate is not None:
-            self._snapshot = snapshot_of_now(self._snapshot, self._trial.model, estimate)
 
     def _compare_search(self, estimate: WindowEstimate) -> bool:
         """Compare a search with earlier ones where successive ones are nested; return whether it shows a change.

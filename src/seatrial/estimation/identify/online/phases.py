@@ -17,11 +17,10 @@ from seatrial.data.trial import FitCriterion, Trial, with_input_corners
 from seatrial.data.trial.settings import Stream
 from seatrial.estimation.estimate.assemble import MarginalPrior, Runs, marginalise
 from seatrial.estimation.estimate.fit import estimate_model, with_segment_seconds
-from seatrial.estimation.estimate.online.change_detector import FilterWatch, GaussianEstimate, bank_size
+from seatrial.estimation.estimate.online.change_detector import FilterWatch, GaussianEstimate, jump_search
 from seatrial.estimation.estimate.online.recursive import Forgetting
 from seatrial.estimation.estimate.online.window import (
     LINEAR_ENOUGH,
-    SampleRows,
     WindowEstimate,
     better_estimate,
     cold_start,
@@ -326,12 +325,18 @@ class SampleMap:
         return cls(np.nan_to_num(matrix), constant, np.nan_to_num(matrix) != 0.0) if is_linear else None
 
     def apply(self, values: Array) -> Array:
-        """Return inputs and outputs of one sample (columns,), NaN where a value that they need is missing."""
+        """Return inputs and outputs of samples (n, columns), NaN where a value that they need is missing.
+
+        Column by column, so that a sample has the same bits however many come with it.
+        """
         missing = np.isnan(values)
-        if not missing.any():
-            return self.matrix @ values + self.constant
-        mapped = self.matrix @ np.where(missing, 0.0, values) + self.constant
-        mapped[self.uses @ missing] = np.nan
+        is_whole = not missing.any()
+        known = values if is_whole else np.where(missing, 0.0, values)
+        mapped = np.repeat(self.constant[None], len(values), axis=0)
+        for column in range(values.shape[1]):
+            mapped += known[:, column : column + 1] * self.matrix[:, column]
+        if not is_whole:
+            mapped[missing @ self.uses.T] = np.nan
         return mapped
 
 
@@ -375,33 +380,42 @@ class RecursivePhase:
         widest = tuple(float(v) for v in np.maximum(np.abs(estimate.value), _scales(estimate)))
         forgetting = None if stream.forgetting_time_s is None else Forgetting(stream.forgetting_time_s, widest)
         if is_watching:
-            size = bank_size(stream.rate)
-            self._filter = filter_from_fit(*optimum, noise_excess=estimate.noise_excess, instants=size)
+            jumps = jump_search(stream.rate)
+            self._filter = filter_from_fit(*optimum, noise_excess=estimate.noise_excess, jumps=jumps)
         else:
             self._filter = filter_from_fit(*optimum, forgetting=forgetting)
         self.watch = FilterWatch(self._filter)
         self._model, self._outputs = fit.problem.model, fit.problem.data.outputs
         columns = len(stream.layout.columns)
-        self._block, self._rows = SampleRows(columns), list[Array]()
         self._last_inputs = np.zeros(len(self._model.inputs))
         # a heading turns on and on, so that a sample of it needs those before
         self._map = None if self._model.has_heading else SampleMap.of_stream(self._converted, columns)
-        self._block_samples = 1 if is_watching and self._map is not None else BLOCK_SAMPLES
+        self._is_immediate = is_watching and self._map is not None
+        width = columns if self._map is None else len(self._map.constant)
+        self._times, self._rows = np.empty(0), np.empty((0, width))  # that wait for a block
 
-    def add(self, time: float, values: Array) -> bool:
-        """Take in one sample, and return whether a block of them has been processed."""
-        if self._map is None:
-            self._block.add(time, values)
-        else:
-            self._rows.append(self._filled(self._map.apply(values)))
-        if len(self._block) + len(self._rows) < self._block_samples:
-            return False
-        self._process_block()
-        return True
+    def take(self, times: Array, values: Array) -> int:
+        """Take in n samples, up to that at which a watch ends, and return how many; times (n,), values (n, columns)."""
+        rows, taken = values if self._map is None else self._filled(self._map.apply(values)), 0
+        while taken < len(times):
+            until = len(times) if self._is_immediate else min(taken + self.room, len(times))
+            self._times = np.concatenate([self._times, times[taken:until]])
+            self._rows = np.concatenate([self._rows, rows[taken:until]])
+            if self._is_immediate or self.room == 0:
+                used = self._process_block()
+                if self.watch.is_ended:
+                    return min(taken + used, len(times)) if self._is_immediate else until
+            taken = until
+        return taken
+
+    @property
+    def room(self) -> int:
+        """Number of samples up to the end of the block that is processed next."""
+        return BLOCK_SAMPLES - len(self._times)
 
     def finish(self) -> None:
         """Take in the samples that wait: the run or the stream ends."""
-        if len(self._block) > 1 or self._rows:
+        if len(self._times) > (self._map is None):
             self._process_block()
         self._filter.flush()
 
@@ -441,36 +455,35 @@ class RecursivePhase:
         """Return the estimate with the samples that still wait, as if none came; None where they wait for a block."""
         if self._map is None:
             return None
-        rows = np.array(self._rows).reshape(len(self._rows), len(self._map.constant))
-        return GaussianEstimate(*self._filter.estimate_with(*self._split(rows)))
+        return GaussianEstimate(*self._filter.estimate_with(*self._split(self._rows)))
 
     @property
     def noise(self) -> dict[str, float]:
         """Rms of the innovations over the last half minute, SI, by channel."""
         return dict(zip(self._outputs, self._filter.innovations.rms.tolist(), strict=True))
 
-    def _process_block(self) -> None:
+    def _process_block(self) -> int:
+        times, rows = self._times, self._rows
+        self._times, self._rows = times[:0], rows[:0]
         if self._map is None:
-            block, self._block = self._block, SampleRows(self._block.values.shape[1])
-            rows = [self._filled(row) for row in self._converted(block.values, block.time)]
-        else:
-            rows, self._rows = self._rows, []
-        measured, inputs = self._split(np.array(rows))
-        self._filter.update(measured, inputs)
+            rows = self._filled(self._converted(rows, times))
+        return self.watch.update(times, *self._split(rows))
 
     def _split(self, rows: Array) -> tuple[Array, Array]:
         """Outputs and inputs of rows (n, nu + ny)."""
         count = len(self._last_inputs)
         return rows[:, count:], rows[:, :count]
 
-    def _filled(self, row: Array) -> Array:
-        """Inputs and outputs of a sample, a missing input being the last one received, at first zero."""
-        inputs = row[: len(self._last_inputs)]
-        missing = np.isnan(inputs)
-        if missing.any():
-            inputs[missing] = self._last_inputs[missing]
-        self._last_inputs = inputs
-        return row
+    def _filled(self, rows: Array) -> Array:
+        """Inputs and outputs of samples, a missing input being the last one received, at first zero."""
+        inputs = rows[:, : len(self._last_inputs)]
+        if np.isnan(inputs).any():
+            for row in inputs:
+                missing = np.isnan(row)
+                row[missing] = self._last_inputs[missing]
+                self._last_inputs = row
+        self._last_inputs = inputs[-1].copy()
+        return rows
 
     def _converted(self, values: Array, time: Array | None = None) -> Array:
         """Inputs and outputs of rows (n, columns) as the readers of files have them, (n, nu + ny), NaN if missing."""
@@ -561,10 +574,12 @@ class StreamProgress:
         """Return the progress after a run has begun."""
         return replace(self, runs=self.runs + 1, last_time=np.nan)
 
-    def with_sample(self, time: float) -> "StreamProgress":
-        """Return the progress after a sample at `time` [s]."""
-        step = 0.0 if np.isnan(self.last_time) else time - self.last_time
-        return StreamProgress(self.samples + 1, self.runs, self.elapsed + step, time)
+    def with_samples(self, times: Array) -> "StreamProgress":
+        """Return the progress after samples at those times [s]."""
+        first = float(times[0]) if np.isnan(self.last_time) else self.last_time
+        steps = np.diff(times, prepend=first)
+        elapsed = float(np.cumsum(np.concatenate([[self.elapsed], steps]))[-1])  # added up one by one
+        return StreamProgress(self.samples + len(times), self.runs, elapsed, float(times[-1]))
 
 
 def first_snapshot(model: Model, change: CoefficientChange | None = None) -> Snapshot:
