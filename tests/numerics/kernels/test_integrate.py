@@ -12,7 +12,7 @@ from tests.numerics.kernels.case import KernelCase
 
 from seatrial.core.equations import Model, Sheet
 from seatrial.numerics.kernels.feedback import steer
-from seatrial.numerics.kernels.integrate import DELAY, correct, sincos, spline_points, spline_slopes
+from seatrial.numerics.kernels.integrate import DELAY, correct, latest_slopes, sincos, spline_points, spline_slopes
 from seatrial.numerics.kernels.kernel import COMMAND_SIGNATURE
 
 # The integrator against the matrix exponential, and what it does at the edges.
@@ -239,6 +239,14 @@ def test_points_are_those_of_the_not_a_knot_spline(count: int, rng: np.random.Ge
 
 def test_one_sample_has_no_slope() -> None:
     np.testing.assert_array_equal(spline_slopes(np.ones((1, 2))), [[0.0, 0.0]])
+
+
+def test_latest_slopes_are_those_of_a_spline_that_ends_at_each_row(rng: np.random.Generator) -> None:
+    u = rng.standard_normal((20, 2))
+    latest = latest_slopes(u, 12)
+    for row in range(1, 20):
+        ended = spline_slopes(u[max(row - 12, 0) : row + 1])
+        np.testing.assert_array_equal(latest[row], np.concatenate([ended[-2], ended[-1]]))
     value, rise = spline_points(np.ones((1, 2)), np.zeros((1, 2)), np.zeros(3))
     np.testing.assert_array_equal(value, np.ones((3, 2)))
     np.testing.assert_array_equal(rise, np.zeros((3, 2)))

@@ -271,14 +271,14 @@ def _drop_old_instants(effects, information, score, opened, look):
 
 @njit(inline="always", **OPTIONS)
 def _watch_sample(
-    root, z, running_means, counts, memory, effects, information, score, room, solved, opened, known, bounds, limits,
-    progress,
+    root, z, running_means, counts, memory, effects, information, score, room, solved, opened, estimates, bounds,
+    limits, progress,
 ):  # fmt: skip
     """Look for a jump at any instant of the bank, and keep the present one; True where the watch ends.
 
-    opened (m,): look at which an instant was kept, -1 where there is none; known (2 k, m): value and standard error of
-    the coefficients there. bounds (2, k): of the coefficients. limits: variance of a jump, threshold, relative standard
-    error up to which coefficients count as known, mean squared innovation beyond which the filter is unsound.
+    opened (m,): look at which an instant was kept, -1 where there is none; estimates (2 k, m): value and standard error
+    of the coefficients there. bounds (2, k): of the coefficients. limits: variance of a jump, threshold, relative
+    standard error up to which coefficients count as known, mean squared innovation beyond which the filter is unsound.
     """
     k, instants = score.shape
     is_sound = True
@@ -300,8 +300,8 @@ def _watch_sample(
         variance = 0.0
         for j in range(z.size):
             variance += root[a, j] * root[a, j]
-        known[a, place], known[k + a, place] = z[a], math.sqrt(variance)
-        is_known = is_known and known[k + a, place] <= limits[2] * abs(z[a])
+        estimates[a, place], estimates[k + a, place] = z[a], math.sqrt(variance)
+        is_known = is_known and estimates[k + a, place] <= limits[2] * abs(z[a])
     if is_known:
         opened[place] = look
         for a in range(k):
@@ -355,7 +355,7 @@ def filter_linear(
     de, dg, dc, dd, step_matrix, output_matrix, expansion_point, z, root, inputs, measured, first_row, is_run_start,
     slopes, variance, limit, memory, running_means, counts, floor_root, forgetting_factor, forget_every,
     samples_since, effects, information, score, innovation_effects, latest, moved, jump_root, solved,
-    opened, known, bounds, limits, progress, v, z_reference, predicted, h, step,
+    opened, estimates, bounds, limits, progress, v, z_reference, predicted, h, step,
     work, w, x,
 ):  # fmt: skip
     """Process rows first_row.. of an affine model; return the row at which the state left all bounds, or -1.
@@ -428,8 +428,10 @@ def filter_linear(
         update_sample(root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts,
                       v, effects, information, score, innovation_effects, latest)  # fmt: skip
         _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, samples_since, v)
-        if opened.size > 0 and _watch_sample(root, z, running_means, counts, memory, effects, information, score,
-                                             jump_root, solved, opened, known, bounds, limits, progress):  # fmt: skip
+        if opened.size > 0 and _watch_sample(
+            root, z, running_means, counts, memory, effects, information, score, jump_root, solved, opened, estimates,
+            bounds, limits, progress,
+        ):  # fmt: skip
             return row
     return -1
 
@@ -446,7 +448,7 @@ def filter_runge_kutta(
     f, g, dt, substeps, p, coefficient_index, select, z, root, inputs, measured, first_row,
     is_run_start, variance, limit, memory, running_means, counts, floor_root, forgetting_factor, forget_every,
     samples_since, effects, information, score, innovation_effects, latest, moved, jump_root, solved,
-    opened, known, bounds, limits, progress, v, z_reference, predicted, h, step,
+    opened, estimates, bounds, limits, progress, v, z_reference, predicted, h, step,
     work, chain, direct, link_u, w, s, work_x, work_u, work_w, jac, entries, g_jac, g_value,
 ):  # fmt: skip
     """Process rows of any model by Runge-Kutta steps, inputs running straight between samples, as `sensitivity` has it.
@@ -510,7 +512,9 @@ def filter_runge_kutta(
         update_sample(root, z, z_reference, h, predicted, measured[row], variance, limit, memory, running_means, counts,
                       v, effects, information, score, innovation_effects, latest)  # fmt: skip
         _forget_when_due(root, z, floor_root, forgetting_factor, forget_every, samples_since, v)
-        if opened.size > 0 and _watch_sample(root, z, running_means, counts, memory, effects, information, score,
-                                             jump_root, solved, opened, known, bounds, limits, progress):  # fmt: skip
+        if opened.size > 0 and _watch_sample(
+            root, z, running_means, counts, memory, effects, information, score, jump_root, solved, opened, estimates,
+            bounds, limits, progress,
+        ):  # fmt: skip
             return row
     return -1

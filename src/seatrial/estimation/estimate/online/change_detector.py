@@ -131,8 +131,8 @@ class FilterWatch:
         """Return the instants that are kept, in their order, and what the data say of a change at each."""
         jumps, k = self._filter.jumps, len(self._filter.names)
         places = np.argsort(jumps.opened)[np.count_nonzero(jumps.opened < 0) :]
-        known = jumps.known[:, places]
-        instants = [_Instant(float(t), v[:k], v[k:]) for t, v in zip(self._times[places], known.T, strict=True)]
+        estimates = jumps.estimates[:, places]
+        instants = [_Instant(float(t), v[:k], v[k:]) for t, v in zip(self._times[places], estimates.T, strict=True)]
         lower = np.moveaxis(jumps.information[:, :, places], 2, 0)
         whole = np.tril(lower) + np.swapaxes(np.tril(lower, -1), 1, 2)
         return instants, _Moves(whole, jumps.score[:, places].T)

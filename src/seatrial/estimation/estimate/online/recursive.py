@@ -100,13 +100,13 @@ class JumpSearch:
             ones alone.
         size: standard deviation of a jump before any data, relative to the coefficient.
         threshold: nats of evidence that end the search for one.
-        known: relative standard error of every coefficient up to which an instant is kept.
+        largest_error: relative standard error of every coefficient up to which an instant is kept.
     """
 
     instants: int = 0
     size: float = 0.0
     threshold: float = np.inf
-    known: float = 0.0
+    largest_error: float = 0.0
 
 
 NO_JUMP = JumpSearch()
@@ -125,7 +125,7 @@ class JumpBank:
         innovation_effects, propagated, root, solved: room for `kernels.recursive`.
         latest: innovations of each channel, (ny, 4).
         opened: look at which each instant was kept, (m,); -1: none is in that place.
-        known: value and standard error of the coefficients there, (2 k, m); bounds: of the coefficients, (2, k).
+        estimates: value and standard error of the coefficients there, (2 k, m); bounds: of the coefficients, (2, k).
         limits, progress: see `kernels.recursive`.
     """
 
@@ -138,7 +138,7 @@ class JumpBank:
     root: Array
     solved: Array
     opened: Index
-    known: Array
+    estimates: Array
     bounds: Array
     limits: Array
     progress: Index
@@ -151,7 +151,8 @@ class JumpBank:
             np.zeros((k + states, k * m)), np.zeros((k, k, m)), np.zeros((k, m)), np.zeros(k * m),
             np.zeros((outputs, 4)), np.zeros((states, k * m)), np.zeros((k, k, m)), np.zeros((k, m)),
             np.full(m, -1, dtype=np.int64), np.zeros((2 * k, m)), bounds,
-            np.array([search.size**2, search.threshold, search.known, divergence_ratio]), np.zeros(2, dtype=np.int64),
+            np.array([search.size**2, search.threshold, search.largest_error, divergence_ratio]),
+            np.zeros(2, dtype=np.int64),
         )  # fmt: skip
 
     @property
@@ -159,7 +160,7 @@ class JumpBank:
         """All of them, as the kernels take them."""
         return (
             self.effects, self.information, self.score, self.innovation_effects, self.latest, self.propagated,
-            self.root, self.solved, self.opened, self.known, self.bounds, self.limits, self.progress,
+            self.root, self.solved, self.opened, self.estimates, self.bounds, self.limits, self.progress,
         )  # fmt: skip
 
     @property
@@ -185,7 +186,7 @@ class JumpBank:
             self, effects=np.zeros((len(self.effects), 0)), information=none[1], score=none[0],
             innovation_effects=np.zeros(0), latest=np.zeros_like(self.latest),
             propagated=np.zeros((len(self.propagated), 0)), root=none[1], solved=none[0],
-            opened=np.zeros(0, dtype=np.int64), known=np.zeros((2 * k, 0)), progress=np.zeros(2, dtype=np.int64),
+            opened=np.zeros(0, dtype=np.int64), estimates=np.zeros((2 * k, 0)), progress=np.zeros(2, dtype=np.int64),
         )  # fmt: skip
 
 
