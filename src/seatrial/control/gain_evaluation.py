@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
-from scipy.optimize import NonlinearConstraint, minimize
+from scipy.optimize import minimize
 
 from seatrial.control.task import OUTPUT, Seaway, SlowDisturbance, TuningTask
 from seatrial.core.results.tuning import ControllerConstraints
@@ -297,7 +297,7 @@ def refine_gains(evaluator: GainEvaluator, start: Array, ceiling: Array | None =
 
     found = minimize(
         value, (start - low) / width, jac=slope, bounds=[(0.0, 1.0)] * len(places), method="SLSQP",
-        constraints=NonlinearConstraint(constraint_margins, 0.0, np.inf, jac=constraint_slopes),
+        constraints={"type": "ineq", "fun": constraint_margins, "jac": constraint_slopes},
         options={"maxiter": 50, "ftol": 1e-10},  # iterations at most, and change of the cost at the end; chosen
     )  # fmt: skip
     unit = np.clip(found.x, 0.0, 1.0)
