@@ -364,9 +364,8 @@ def spread_gains(evaluator: GainEvaluator, seed: int) -> Array:
 def least_output_gains(evaluator: GainEvaluator, samples: Array, near: Sequence[Array] = ()) -> Array:
     """Return the best samples pressed against the restrictions; the least first objective wins, (g,).
 
-    Where no sample keeps them, the one that breaks them least. Searches end as soon as several, each from a start of its
-    own, have met in the best optimum so far, verified (a multistart that stops on agreement: Boender & Rinnooy Kan 1987,
-    Math. Program. 37, 59-80, have the Bayesian rule). near: optima (g,) under restrictions that are nearly the
+    Where no sample keeps them, the one that breaks them least. The search stops where several starts have met in the
+    best optimum so far, verified. near: optima (g,) under restrictions that are nearly the
     same, from which the search begins as well (continuation: Allgower & Georg 1990, Numerical Continuation Methods); it
     alone stays on the branch of optima where it began, such as without an integral.
     """
@@ -377,29 +376,23 @@ def least_output_gains(evaluator: GainEvaluator, samples: Array, near: Sequence[
     faces = np.tile(tried[0][places], (len(places), 1))  # an optimum may lie where a term is left out
     np.fill_diagonal(faces, low)
     starts = [*(start[places] for start in (*near, *tried)), *faces]
-    best, agreeing, ends = tried[0], 0, list[_SearchEnd]()
+    best, agreeing, ends, verified = tried[0], 0, list[Array](), list[Array]()
     for start in starts:
-        ends.append(_pressed_gains(evaluator, start))
-        best = _best_of(evaluator, [*tried, *(end.gains for end in ends)])
-        agreeing = sum(end.is_verified and _is_same(end.gains, best) for end in ends)
+        end, is_verified = _pressed_gains(evaluator, start)
+        ends.append(end)
+        verified += [end] * is_verified
+        best = _best_of(evaluator, [*tried, *ends])
+        agreeing = sum(_is_same(one, best) for one in verified)
         if agreeing == _AGREEING:
             break
     if agreeing:
         return best
     for _ in range(_RESTARTS):  # the search's picture of the curvature begins anew
-        again = _best_of(evaluator, [best, _pressed_gains(evaluator, best[places]).gains])
+        again = _best_of(evaluator, [best, _pressed_gains(evaluator, best[places])[0]])
         if _is_same(again, best):
             return again
         best = again
     return best
-
-
-@dataclass(frozen=True, eq=False)
-class _SearchEnd:
-    """Gains (g,) at which a search by gradients ends, and whether they are verified as an optimum."""
-
-    gains: Array
-    is_verified: bool
 
 
 def _is_same(gains: Array, others: Array) -> bool:
@@ -407,11 +400,11 @@ def _is_same(gains: Array, others: Array) -> bool:
     return bool(np.allclose(gains, others, rtol=_ROUNDING, atol=0.0))
 
 
-def _pressed_gains(evaluator: GainEvaluator, start: Array) -> _SearchEnd:
-    """Return the end of a search by gradients from free gains (f,): at the optimum itself where it is verified."""
+def _pressed_gains(evaluator: GainEvaluator, start: Array) -> tuple[Array, bool]:
+    """Return gains (g,) of a search by gradients from free gains (f,), and whether they are verified as an optimum."""
     gains = all_gains(evaluator, refine_gains(evaluator, start)[None])[0]
     polished = polished_gains(evaluator, gains)
-    return _SearchEnd(gains, False) if polished is None else _SearchEnd(polished, True)
+    return (gains, False) if polished is None else (polished, True)
 
 
 def _best_of(evaluator: GainEvaluator, tried: list[Array]) -> Array:
