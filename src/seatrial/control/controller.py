@@ -156,19 +156,19 @@ def reference_model(demand: Array, dt: float, time_constant: float, rate: float 
 
     Critically damped, with saturating rate (Fossen 2021, Handbook, section 12.1, reference models).
     """
-    w, rows = 1.0 / time_constant, np.empty((3, len(demand)))
+    w, rows = 1.0 / time_constant, list[tuple[float, float, float]]()
     (stay, carry), (pull, damp) = expm(np.array([[0.0, 1.0], [-(w**2), -2.0 * w]]) * dt).tolist()
     x, v = 0.0, 0.0
-    for k, r in enumerate(demand.tolist()):
+    for r in demand.tolist():
         away, speed = stay * (x - r) + carry * v, pull * (x - r) + damp * v
         acceleration = -(w**2) * (x - r) - 2.0 * w * v
         if abs(speed) > rate:
             speed = math.copysign(rate, speed)
             away = x - r + 0.5 * (v + speed) * dt
             acceleration = (speed - v) / dt
-        rows[:, k] = x, v, acceleration
+        rows.append((x, v, acceleration))
         x, v = r + away, speed
-    return ReferenceMotion(*rows)
+    return ReferenceMotion(*np.array(rows).T.copy())
 
 
 def relative_overshoot(output: Array, demand: Array, step_samples: tuple[int, ...]) -> float:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
-from scipy.optimize import NonlinearConstraint, minimize
+from scipy.optimize import minimize
 
 from seatrial.control.task import OUTPUT, Seaway, SlowDisturbance, TuningTask
 from seatrial.core.results.tuning import ControllerConstraints
@@ -297,7 +297,7 @@ def refine_gains(evaluator: GainEvaluator, start: Array, ceiling: Array | None =
 
     found = minimize(
         value, (start - low) / width, jac=slope, bounds=[(0.0, 1.0)] * len(places), method="SLSQP",
-        constraints=NonlinearConstraint(constraint_margins, 0.0, np.inf, jac=constraint_slopes),
+        constraints={"type": "ineq", "fun": constraint_margins, "jac": constraint_slopes},
         options={"maxiter": 50, "ftol": 1e-10},  # iterations at most, and change of the cost at the end; chosen
     )  # fmt: skip
     unit = np.clip(found.x, 0.0, 1.0)
@@ -349,7 +349,8 @@ def motion_and_rate_variances(evaluator: GainEvaluator, gains: Array) -> Array:
 # The gains that leave least of the output within the restrictions: spread points, the best pressed by gradients.
 
 _SAMPLES, _STARTS = 4096, 3  # spread points, and those that are refined; chosen
-_RESTARTS = 5  # searches from the best, until one finds nothing better; chosen
+_AGREEING = 3  # searches that end in the best, verified optimum, after which the others are left out; chosen
+_RESTARTS = 5  # searches from the best where it is not verified, until one finds nothing better; chosen
 
 
 def spread_gains(evaluator: GainEvaluator, seed: int) -> Array:
@@ -363,7 +364,8 @@ def spread_gains(evaluator: GainEvaluator, seed: int) -> Array:
 def least_output_gains(evaluator: GainEvaluator, samples: Array, near: Sequence[Array] = ()) -> Array:
     """Return the best samples pressed against the restrictions; the least first objective wins, (g,).
 
-    Where no sample keeps them, the one that breaks them least. near: optima (g,) under restrictions that are nearly the
+    Where no sample keeps them, the one that breaks them least. The search stops where several starts have met in the
+    best optimum so far, verified. near: optima (g,) under restrictions that are nearly the
     same, from which the search begins as well (continuation: Allgower & Georg 1990, Numerical Continuation Methods); it
     alone stays on the branch of optima where it began, such as without an integral.
     """
@@ -374,20 +376,35 @@ def least_output_gains(evaluator: GainEvaluator, samples: Array, near: Sequence[
     faces = np.tile(tried[0][places], (len(places), 1))  # an optimum may lie where a term is left out
     np.fill_diagonal(faces, low)
     starts = [*(start[places] for start in (*near, *tried)), *faces]
-    best = _best_of(evaluator, [*tried, *(_pressed_gains(evaluator, start) for start in starts)])
+    best, agreeing, ends, verified = tried[0], 0, list[Array](), list[Array]()
+    for start in starts:
+        end, is_verified = _pressed_gains(evaluator, start)
+        ends.append(end)
+        verified += [end] * is_verified
+        best = _best_of(evaluator, [*tried, *ends])
+        agreeing = sum(_is_same(one, best) for one in verified)
+        if agreeing == _AGREEING:
+            break
+    if agreeing:
+        return best
     for _ in range(_RESTARTS):  # the search's picture of the curvature begins anew
-        again = _best_of(evaluator, [best, _pressed_gains(evaluator, best[places])])
-        if np.allclose(again, best, rtol=_ROUNDING, atol=0.0):
+        again = _best_of(evaluator, [best, _pressed_gains(evaluator, best[places])[0]])
+        if _is_same(again, best):
             return again
         best = again
     return best
 
 
-def _pressed_gains(evaluator: GainEvaluator, start: Array) -> Array:
-    """Return gains (g,) of a search by gradients from free gains (f,), at the optimum itself where it is verified."""
+def _is_same(gains: Array, others: Array) -> bool:
+    """Return whether two sets of gains differ by no more than rounding."""
+    return bool(np.allclose(gains, others, rtol=_ROUNDING, atol=0.0))
+
+
+def _pressed_gains(evaluator: GainEvaluator, start: Array) -> tuple[Array, bool]:
+    """Return gains (g,) of a search by gradients from free gains (f,), and whether they are verified as an optimum."""
     gains = all_gains(evaluator, refine_gains(evaluator, start)[None])[0]
     polished = polished_gains(evaluator, gains)
-    return gains if polished is None else polished
+    return (gains, False) if polished is None else (polished, True)
 
 
 def _best_of(evaluator: GainEvaluator, tried: list[Array]) -> Array:

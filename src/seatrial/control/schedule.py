@@ -135,6 +135,7 @@ def _programme(
             *[(0.0, None)] * n,
         ],
         method="highs",
+        options={"presolve": False},  # of so few unknowns it takes longer than it saves
     )  # fmt: skip
     return done.x[: n * f].reshape(n, f) if done.x is not None else np.zeros_like(x)
 

@@ -14,8 +14,6 @@ from seatrial.core.equations.model import RUDDER, ZERO_BY_DEFAULT
 from seatrial.core.values import NOTATION, Array, InputError, Parameter, Parameters, frozen, spelling_hint
 from seatrial.core.values.record import froude_factor
 from seatrial.data.folder.model_file import ModelFile
-from seatrial.estimation.information.stability import lateral_states
-from seatrial.estimation.predict.draws import square_root
 from seatrial.numerics.kernels.integrate import evaluate_tangent
 from seatrial.numerics.kernels.loop import is_hurwitz
 from seatrial.physics.hydro.free_roll import equivalent_damping
@@ -286,6 +284,8 @@ def _mean_matrices(one: LinearSystem, other: LinearSystem) -> LinearSystem:
 
 
 def _one_sided_matrices(ship: TrimmedShip) -> tuple[LinearSystem, LinearSystem]:
+    from seatrial.estimation.information.stability import lateral_states
+
     model = ship.model
     nx, nu = len(model.states), len(model.inputs)
     aside = np.zeros(nx)
@@ -429,6 +429,8 @@ def drawn_values(model: Model, covariance: Array, draws: int, seed: int) -> list
     """Return free parameters by name, sampled from their Gaussian; none without a covariance. Nothing is truncated."""
     if not covariance.size:
         return []
+    from seatrial.estimation.predict.draws import square_root
+
     free = model.parameters.free
     spread = np.random.default_rng(seed).standard_normal((draws, len(free))) @ square_root(covariance).T
     points = np.array([p.value for p in free]) + spread

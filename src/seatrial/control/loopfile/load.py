@@ -8,7 +8,6 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from seatrial.control.actuator_log import actuator_response, logged_records
 from seatrial.control.loopfile.disturbances import loop_disturbances, point_motions, refuse_calm
 from seatrial.control.loopfile.loop import extended_structure, loop_from_tables, objective, objective_places
 from seatrial.control.loopfile.plant import (
@@ -120,6 +119,8 @@ def _with_logged_actuator(file: LoopFile, plant: LoopPlant, home: Path) -> tuple
     table = file.actuator
     if not table.log:
         return file, plant
+    from seatrial.control.actuator_log import actuator_response, logged_records
+
     path = home / table.log
     try:
         response = actuator_response(logged_records(path), plant.actuator)

@@ -10,6 +10,7 @@ begins to lag, where pitch is largest.
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
@@ -26,6 +27,7 @@ _INTEGRAL_RATIO = 0.1  # KI over omega KP, Fossen 2021, section 15.3
 _BAND, _SAMPLES = (1e-2, 1e2), 2000  # over the least and largest root: where a response is looked at; chosen
 _TOLERANCE = 1e-14  # of the logarithm of a frequency that is sought: rounding
 _NEGLIGIBLE_POLE = 1e-9  # of the largest pole, below which a pole counts as zero: rounding
+_KEPT_PLANTS = 8  # whose working frequency is kept in memory: every run of a simulation asks for it; chosen
 MEANINGS = {"KP": "proportional gain", "KI": "gain of the integral", "KD": "gain of the filtered derivative"}
 UNITS = {"KP": "1", "KI": "1/s", "KD": "s"}
 Gains = dict[str, float]
@@ -167,6 +169,7 @@ def acceleration_feed_forward(plant: Block, omega: float) -> FeedForward:
     return FeedForward(0.0, inverse, slope) if integrates else FeedForward(inverse, slope, 0.0)
 
 
+@lru_cache(maxsize=_KEPT_PLANTS)
 def working_frequency(plant: Block) -> float:
     """Return the frequency [rad/s] by which a loop on the plant is scaled, as its response shows it.
 

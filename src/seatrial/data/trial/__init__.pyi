@@ -1,0 +1,29 @@
+"""Names of this package, imported when first used."""
+
+from seatrial.data.trial.craft_tables import ControllerGains as ControllerGains
+from seatrial.data.trial.craft_tables import Feedback as Feedback
+from seatrial.data.trial.load import corrected_trial as corrected_trial
+from seatrial.data.trial.load import load_runs as load_runs
+from seatrial.data.trial.load import load_trial as load_trial
+from seatrial.data.trial.load import parse_tables as parse_tables
+from seatrial.data.trial.load import trial_of_tables as trial_of_tables
+from seatrial.data.trial.records import CheckedRecords as CheckedRecords
+from seatrial.data.trial.records import TrialRecord as TrialRecord
+from seatrial.data.trial.records import approach_condition as approach_condition
+from seatrial.data.trial.records import checked_records as checked_records
+from seatrial.data.trial.records import load_records as load_records
+from seatrial.data.trial.records import refuse_errors as refuse_errors
+from seatrial.data.trial.records import with_input_corners as with_input_corners
+from seatrial.data.trial.run_data import RunFiles as RunFiles
+from seatrial.data.trial.settings import SEARCHES as SEARCHES
+from seatrial.data.trial.settings import EstimateMethod as EstimateMethod
+from seatrial.data.trial.settings import EstimateSettings as EstimateSettings
+from seatrial.data.trial.settings import FitCriterion as FitCriterion
+from seatrial.data.trial.settings import ModelFamily as ModelFamily
+from seatrial.data.trial.settings import OwnEstimate as OwnEstimate
+from seatrial.data.trial.settings import SearchFitness as SearchFitness
+from seatrial.data.trial.settings import SearchSettings as SearchSettings
+from seatrial.data.trial.trial import Role as Role
+from seatrial.data.trial.trial import Run as Run
+from seatrial.data.trial.trial import Trial as Trial
+from seatrial.data.trial.trial import Trimming as Trimming
