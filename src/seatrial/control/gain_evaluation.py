@@ -297,7 +297,7 @@ def refine_gains(evaluator: GainEvaluator, start: Array, ceiling: Array | None =
 
     found = minimize(
         value, (start - low) / width, jac=slope, bounds=[(0.0, 1.0)] * len(places), method="SLSQP",
-        constraints={"type": "ineq", "fun": constraint_margins, "jac": constraint_slopes},
+        constraints={"type": "ineq", "fun": constraint_margins, "jac": constraint_slopes},  # type: ignore[arg-type]
         options={"maxiter": 50, "ftol": 1e-10},  # iterations at most, and change of the cost at the end; chosen
     )  # fmt: skip
     unit = np.clip(found.x, 0.0, 1.0)
