@@ -7,8 +7,15 @@ import numpy as np
 import pytest
 from tests.control.fin_tasks import PAPER_OBJECTIVES, PUBLISHED, VARIANCES, fin_task
 
+from seatrial.control import gain_evaluation
 from seatrial.control.front import rate_curve
-from seatrial.control.gain_evaluation import GainEvaluator, gain_evaluator, polished_gains
+from seatrial.control.gain_evaluation import (
+    GainEvaluator,
+    gain_evaluator,
+    least_output_gains,
+    polished_gains,
+    spread_gains,
+)
 from seatrial.control.task import Effectiveness
 from seatrial.core.results.tuning import ControllerConstraints
 from seatrial.physics.loops import Performance
@@ -120,3 +127,22 @@ def test_a_point_that_is_no_optimum_is_not_verified():
     task = fin_task()
     one = GainEvaluator(task, task.loop, (task.motion,))
     assert polished_gains(one, np.array([1.0, 1.0, 1.0])) is None
+
+
+def test_a_search_from_several_starts_ends_where_three_agree_and_not_before(monkeypatch):
+    task = fin_task()
+    one = GainEvaluator(task, task.loop, (task.motion,))
+    press, ends = gain_evaluation._pressed_gains, []
+
+    def pressed(evaluator, start):
+        ends.append(press(evaluator, start))
+        return ends[-1]
+
+    monkeypatch.setattr(gain_evaluation, "_pressed_gains", pressed)
+    samples = spread_gains(one, 0)
+    best, count = least_output_gains(one, samples), len(ends)
+    assert count == 6  # three samples and three faces, of which two meet in the best
+    again = least_output_gains(one, samples, [best])
+    agreeing = [is_verified and np.allclose(gains, best, rtol=1e-9, atol=0.0) for gains, is_verified in ends[count:]]
+    np.testing.assert_allclose(again, best, rtol=1e-9)
+    assert agreeing == [True, False, True, True]

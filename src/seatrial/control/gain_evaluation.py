@@ -297,7 +297,7 @@ def refine_gains(evaluator: GainEvaluator, start: Array, ceiling: Array | None =
 
     found = minimize(
         value, (start - low) / width, jac=slope, bounds=[(0.0, 1.0)] * len(places), method="SLSQP",
-        constraints={"type": "ineq", "fun": constraint_margins, "jac": constraint_slopes},
+        constraints={"type": "ineq", "fun": constraint_margins, "jac": constraint_slopes},  # type: ignore[arg-type]
         options={"maxiter": 50, "ftol": 1e-10},  # iterations at most, and change of the cost at the end; chosen
     )  # fmt: skip
     unit = np.clip(found.x, 0.0, 1.0)
@@ -395,9 +395,9 @@ def least_output_gains(evaluator: GainEvaluator, samples: Array, near: Sequence[
     return best
 
 
-def _is_same(gains: Array, others: Array) -> bool:
+def _is_same(gains: Array, second: Array) -> bool:
     """Return whether two sets of gains differ by no more than rounding."""
-    return bool(np.allclose(gains, others, rtol=_ROUNDING, atol=0.0))
+    return bool(np.allclose(gains, second, rtol=_ROUNDING, atol=0.0))
 
 
 def _pressed_gains(evaluator: GainEvaluator, start: Array) -> tuple[Array, bool]:
