@@ -34,7 +34,7 @@ LEAST_HELD = 0.8  # share of intervals, required
 # m/s, m forward of midship where the ship turns about, m of latitude in a degree, rad and rad/s of the yaw in waves
 SPEED, PIVOT, A_DEGREE, YAW, SWELL = 7.8, 0.35 * LENGTH, 111195.0, math.radians(0.35), 0.72
 KNOT, SPEED_NOISE = 0.514444, 0.05  # m/s, kn
-MOST_MISSED = 2.0  # deg of heading over one length, required: some four times what whole degrees leave
+MOST_MISSED = 2.0  # deg of heading over one length, required; chosen: twice a step of the log
 
 
 def day(seed: int, step_deg: float) -> Record:
